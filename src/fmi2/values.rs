@@ -1,0 +1,39 @@
+//! The values of all variables of an instance, by slot.
+//!
+//! A *slot* is a variable's place among those of its base type, in the order of
+//! [`Definition::variables`]; value references are mapped to slots by the FMI layer.
+
+use serde::{Deserialize, Serialize};
+
+use crate::description::{Definition, Kind, VariableType};
+
+/// Values by base type and slot.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Values {
+    /// Real values, in the units of the table.
+    pub reals: Vec<f64>,
+    /// Integer values.
+    pub integers: Vec<i32>,
+    /// Boolean values.
+    pub booleans: Vec<bool>,
+}
+
+impl Values {
+    /// The start values of `definition`; zero or false for what has none.
+    pub fn start(definition: &Definition) -> Self {
+        let mut values = Self { reals: Vec::new(), integers: Vec::new(), booleans: Vec::new() };
+        for variable in &definition.variables {
+            match variable.kind {
+                Kind::Real { start, .. } => values.reals.push(start.unwrap_or(0.0)),
+                Kind::Integer { start, .. } => values.integers.push(start.unwrap_or(0)),
+                Kind::Boolean { start } => values.booleans.push(start.unwrap_or(false)),
+            }
+        }
+        values
+    }
+
+    /// The slot of the variable called `name`, `None` if there is none of that type.
+    pub fn slot(definition: &Definition, variable_type: VariableType, name: &str) -> Option<usize> {
+        definition.variables.iter().filter(|v| v.variable_type() == variable_type).position(|v| v.name == name)
+    }
+}
