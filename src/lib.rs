@@ -16,3 +16,4 @@ pub mod dynamics;
 pub mod fmi2;
 pub mod mechanism;
 pub mod models;
+pub mod scalar;

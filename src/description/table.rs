@@ -163,11 +163,7 @@ impl Variable {
 
     /// The independent variable `time` with value reference 0.
     pub fn time() -> Self {
-        Self {
-            causality: Causality::Independent,
-            initial: None,
-            ..Self::real("time", 0, Some("s"), "Simulation time")
-        }
+        Self { causality: Causality::Independent, initial: None, ..Self::real("time", 0, Some("s"), "Simulation time") }
     }
 
     pub fn input(mut self) -> Self {

@@ -18,7 +18,10 @@ pub fn definition() -> Definition {
     let input_names = names(&inputs);
     let exact = [input_names.clone(), names(&parameters)].concat();
     let unknowns = |knowns: &[String]| {
-        outputs.iter().map(|name| Unknown { variable: name.clone(), dependencies: dependencies(name, knowns) }).collect()
+        outputs
+            .iter()
+            .map(|name| Unknown { variable: name.clone(), dependencies: dependencies(name, knowns) })
+            .collect()
     };
     Definition {
         model_identifier: "Rps3Controller",
@@ -71,7 +74,8 @@ fn inputs() -> Vec<Variable> {
         list.push(Variable::real(&format!("a_{axis}"), 19 + i as u32, Some("m/s2"), &text).input().start(0.0));
     }
     let starts = [d::START_HEAVE, d::START_TILT_X, d::START_TILT_Y];
-    let derivatives = [("", "Reference of"), ("_dot", "Rate of the reference of"), ("_ddot", "Acceleration of the reference of")];
+    let derivatives =
+        [("", "Reference of"), ("_dot", "Rate of the reference of"), ("_ddot", "Acceleration of the reference of")];
     for (k, (suffix, text)) in derivatives.into_iter().enumerate() {
         for (i, name) in coordinates("").iter().enumerate() {
             let (unit, display) = match k {
@@ -110,11 +114,23 @@ fn outputs() -> Vec<Variable> {
         for (i, name) in coordinates("").iter().enumerate() {
             let (unit, display) = COORDINATE_UNITS[i];
             let text = format!("{text} {name}");
-            list.push(output((113 + 3 * k + i) as u32, &format!("{name}{suffix}"), Some(unit), &text).display(display).nominal(0.1));
+            list.push(
+                output((113 + 3 * k + i) as u32, &format!("{name}{suffix}"), Some(unit), &text)
+                    .display(display)
+                    .nominal(0.1),
+            );
         }
     }
-    list.push(output(119, "err_position", Some("m"), "Distance of P from its reference, estimated").display("mm").nominal(1e-3));
-    list.push(output(120, "err_rotation", Some("rad"), "Angle between platform and its reference, estimated").display("deg").nominal(1e-3));
+    list.push(
+        output(119, "err_position", Some("m"), "Distance of P from its reference, estimated")
+            .display("mm")
+            .nominal(1e-3),
+    );
+    list.push(
+        output(120, "err_rotation", Some("rad"), "Angle between platform and its reference, estimated")
+            .display("deg")
+            .nominal(1e-3),
+    );
     list.push(output(121, "mpso_fitness", Some("m2"), "Best fitness of the swarm; 0 in modes 1 to 3").nominal(1e-8));
     list.push(Variable::integer("mpso_iterations", 100, "Iterations of the swarm at the last tick").output());
     list.push(Variable::boolean("saturated", 100, "A voltage is at its limit").output());
@@ -130,20 +146,31 @@ fn reals() -> Vec<Variable> {
         Variable::real(name, vr, unit, text).tunable().start(start).range(min, max)
     };
     let mut list = vec![
-        real(2000, "sample_time", Some("s"), d::SAMPLE_TIME, 1e-6, 10.0, "Time between ticks").display("ms").nominal(1e-3),
+        real(2000, "sample_time", Some("s"), d::SAMPLE_TIME, 1e-6, 10.0, "Time between ticks")
+            .display("ms")
+            .nominal(1e-3),
         tunable(2001, "k_p", Some("1/s2"), d::K_P, 0.0, INF, "Position gain K_P (4.5b)").nominal(1e3),
         tunable(2002, "k_d", Some("1/s"), d::K_D, 0.0, INF, "Velocity gain K_D (4.5b)").nominal(100.0),
         tunable(2003, "k_a", None, d::K_A, -INF, INF, "Acceleration feedback gain (Figure 8)"),
         tunable(2004, "rho_fixed", None, d::RHO_FIXED, 0.0, INF, "Damping factor rho of modes 2 and 3").nominal(0.1),
         tunable(2005, "delta_hd_fixed", None, d::DELTA_HD_FIXED, 0.0, INF, "delta_hd of mode 3 (4.16)").nominal(0.1),
-        tunable(2006, "lambda_f_fixed", None, d::LAMBDA_F_FIXED, 0.0, INF, "Force-distribution damping of modes 2 and 3")
-            .nominal(0.01),
+        tunable(
+            2006,
+            "lambda_f_fixed",
+            None,
+            d::LAMBDA_F_FIXED,
+            0.0,
+            INF,
+            "Force-distribution damping of modes 2 and 3",
+        )
+        .nominal(0.01),
         real(2007, "c1", None, d::C1, 0.0, INF, "Pull to the particle's own best c1 (3.1)"),
         real(2008, "c2", None, d::C2, 0.0, INF, "Pull to the swarm's best c2 (3.1)"),
         real(2009, "inertia_max", None, d::INERTIA_MAX, 0.0, INF, "First inertia weight w_max (3.2)"),
         real(2010, "inertia_min", None, d::INERTIA_MIN, 0.0, INF, "Last inertia weight w_min (3.2)"),
         real(2011, "decay_max", None, d::DECAY_MAX, 0.0, INF, "First decay scale, the paper's rho_max (3.5)"),
-        real(2012, "decay_min", None, d::DECAY_MIN, 0.0, INF, "Last decay scale, the paper's rho_min (3.5)").nominal(0.01),
+        real(2012, "decay_min", None, d::DECAY_MIN, 0.0, INF, "Last decay scale, the paper's rho_min (3.5)")
+            .nominal(0.01),
         real(2013, "regulating_scale", None, d::REGULATING_SCALE, 0.0, INF, "Regulating scale R (3.5)"),
         real(2014, "velocity_limit", None, d::VELOCITY_LIMIT, 0.0, 1.0, "Largest step of a particle by search range"),
         real(2015, "rho_min", None, d::RHO_MIN, POSITIVE, INF, "Search range of rho: smallest above 0").nominal(1e-4),
@@ -155,10 +182,26 @@ fn reals() -> Vec<Variable> {
         tunable(2020, "horizon", Some("s"), d::HORIZON, 1e-6, INF, "Prediction horizon of the fitness")
             .display("ms")
             .nominal(0.01),
-        tunable(2021, "weight_velocity", Some("s2"), d::WEIGHT_VELOCITY, 0.0, INF, "Fitness: weight of the velocity error")
-            .nominal(1e-4),
-        tunable(2022, "weight_acceleration", Some("s4"), d::WEIGHT_ACCELERATION, 0.0, INF, "Fitness: weight of the acceleration")
-            .nominal(1e-8),
+        tunable(
+            2021,
+            "weight_velocity",
+            Some("s2"),
+            d::WEIGHT_VELOCITY,
+            0.0,
+            INF,
+            "Fitness: weight of the velocity error",
+        )
+        .nominal(1e-4),
+        tunable(
+            2022,
+            "weight_acceleration",
+            Some("s4"),
+            d::WEIGHT_ACCELERATION,
+            0.0,
+            INF,
+            "Fitness: weight of the acceleration",
+        )
+        .nominal(1e-8),
         real(2023, "move_time", Some("s"), d::MOVE_TIME, 1e-3, INF, "Duration of the motion from start to end"),
     ];
     let waypoints = [
@@ -172,24 +215,77 @@ fn reals() -> Vec<Variable> {
             let text = format!("Waypoint {point}: {name}");
             let limit = if i == 0 { INF } else { 1.5 };
             list.push(
-                real((2030 + 3 * k + i) as u32, &format!("{point}_{name}"), Some(unit), starts[i], -limit, limit, &text)
-                    .display(display)
-                    .nominal(0.1),
+                real(
+                    (2030 + 3 * k + i) as u32,
+                    &format!("{point}_{name}"),
+                    Some(unit),
+                    starts[i],
+                    -limit,
+                    limit,
+                    &text,
+                )
+                .display(display)
+                .nominal(0.1),
             );
         }
     }
     list.extend([
         real(2040, "sensor_scale", None, 0.0, 0.0, INF, "Scale of all sensor imperfections; 0: ideal sensors"),
-        real(2041, "sensor_length_resolution", Some("m"), d::SENSOR_LENGTH_RESOLUTION, 0.0, INF, "Resolution of limb lengths (Table 1)")
-            .display("mm").nominal(1e-4),
-        real(2042, "sensor_length_noise", Some("m"), d::SENSOR_LENGTH_NOISE, 0.0, INF, "Repeatability of limb lengths, standard deviation (Table 1)")
-            .display("mm").nominal(1e-4),
-        real(2043, "sensor_length_bias", Some("m"), d::SENSOR_LENGTH_BIAS, 0.0, INF, "Largest static error of limb lengths (Table 1)")
-            .display("mm").nominal(1e-3),
-        real(2044, "sensor_angle_resolution", Some("rad"), d::SENSOR_ANGLE_RESOLUTION, 0.0, INF, "Resolution of limb angles (Table 1)")
-            .display("deg").nominal(1e-3),
-        real(2045, "sensor_angle_noise", Some("rad"), d::SENSOR_ANGLE_NOISE, 0.0, INF, "Repeatability of limb angles, standard deviation (Table 1)")
-            .display("deg").nominal(1e-3),
+        real(
+            2041,
+            "sensor_length_resolution",
+            Some("m"),
+            d::SENSOR_LENGTH_RESOLUTION,
+            0.0,
+            INF,
+            "Resolution of limb lengths (Table 1)",
+        )
+        .display("mm")
+        .nominal(1e-4),
+        real(
+            2042,
+            "sensor_length_noise",
+            Some("m"),
+            d::SENSOR_LENGTH_NOISE,
+            0.0,
+            INF,
+            "Repeatability of limb lengths, standard deviation (Table 1)",
+        )
+        .display("mm")
+        .nominal(1e-4),
+        real(
+            2043,
+            "sensor_length_bias",
+            Some("m"),
+            d::SENSOR_LENGTH_BIAS,
+            0.0,
+            INF,
+            "Largest static error of limb lengths (Table 1)",
+        )
+        .display("mm")
+        .nominal(1e-3),
+        real(
+            2044,
+            "sensor_angle_resolution",
+            Some("rad"),
+            d::SENSOR_ANGLE_RESOLUTION,
+            0.0,
+            INF,
+            "Resolution of limb angles (Table 1)",
+        )
+        .display("deg")
+        .nominal(1e-3),
+        real(
+            2045,
+            "sensor_angle_noise",
+            Some("rad"),
+            d::SENSOR_ANGLE_NOISE,
+            0.0,
+            INF,
+            "Repeatability of limb angles, standard deviation (Table 1)",
+        )
+        .display("deg")
+        .nominal(1e-3),
     ]);
     list
 }
@@ -206,7 +302,14 @@ fn integers() -> Vec<Variable> {
         integer(2001, "computation_delay", 0, 0, 1, "Samples between measurement and voltage"),
         integer(2002, "swarm_size", d::SWARM_SIZE, 2, 1000, "Particles PS of the swarm"),
         integer(2003, "max_iterations", d::MAX_ITERATIONS, 1, 10_000, "Largest number of iterations at a tick"),
-        integer(2004, "stall_iterations", d::STALL_ITERATIONS, 1, 10_000, "Iterations without a better solution that end the search"),
+        integer(
+            2004,
+            "stall_iterations",
+            d::STALL_ITERATIONS,
+            1,
+            10_000,
+            "Iterations without a better solution that end the search",
+        ),
         integer(2005, "seed", d::SEED, 0, i32::MAX, "Seed of all random numbers"),
         integer(2006, "reference_mode", 1, 1, 2, "1 internal waypoints, 2 inputs ref_*"),
         integer(2007, "profile", 2, 1, 2, "1 constant speed of P with short blends, 2 quintic time law"),

@@ -11,11 +11,13 @@ pub fn definition() -> Definition {
     let inputs = inputs();
     let parameters = [mechanism_parameters(), parameters()].concat();
     let positions = states_and_rates();
-    let variables = [vec![Variable::time()], inputs.clone(), positions, outputs(), locals(), parameters.clone()].concat();
+    let variables =
+        [vec![Variable::time()], inputs.clone(), positions, outputs(), locals(), parameters.clone()].concat();
     let outputs: Vec<String> =
         variables.iter().filter(|v| v.causality == Causality::Output).map(|v| v.name.clone()).collect();
     let state_names = state_names();
-    let derivative_names = [coordinates("_dot"), coordinates("_ddot"), per_limb("i_leg", "_dot"), per_limb("i_rev", "_dot")].concat();
+    let derivative_names =
+        [coordinates("_dot"), coordinates("_ddot"), per_limb("i_leg", "_dot"), per_limb("i_rev", "_dot")].concat();
     let unknown = |name: &String| Unknown { variable: name.clone(), dependencies: dependencies(name) };
     let exact = [names(&inputs), names(&parameters)].concat();
     let initial = |name: &String| Unknown { variable: name.clone(), dependencies: initial_dependencies(name, &exact) };
@@ -59,12 +61,16 @@ fn inputs() -> Vec<Variable> {
         }
     }
     for (k, (prefix, unit, text)) in
-        [("f_ext", "N", "External force at P"), ("m_ext", "N.m", "External moment on the platform")].into_iter().enumerate()
+        [("f_ext", "N", "External force at P"), ("m_ext", "N.m", "External moment on the platform")]
+            .into_iter()
+            .enumerate()
     {
         for (i, axis) in ["x", "y", "z"].into_iter().enumerate() {
             let text = format!("{text}, base frame, {axis} component");
             list.push(
-                Variable::real(&format!("{prefix}_{axis}"), (7 + 3 * k + i) as u32, Some(unit), &text).input().start(0.0),
+                Variable::real(&format!("{prefix}_{axis}"), (7 + 3 * k + i) as u32, Some(unit), &text)
+                    .input()
+                    .start(0.0),
             );
         }
     }
@@ -136,10 +142,16 @@ fn outputs() -> Vec<Variable> {
         list.push(Variable::real(&format!("q_{part}"), 145 + i as u32, None, &text).output().range(-1.0, 1.0));
     }
     list.push(
-        Variable::real("sigma_min", 149, None, "Smallest singular value of the scaled 6x6 Jacobian J").output().nominal(0.1),
+        Variable::real("sigma_min", 149, None, "Smallest singular value of the scaled 6x6 Jacobian J")
+            .output()
+            .nominal(0.1),
     );
     list.push(Variable::real("det_a", 150, None, "Determinant of A (Appendix B), lengths divided by a").output());
-    list.push(Variable::real("power_electric", 151, Some("W"), "Power that enters at the motor terminals").output().nominal(10.0));
+    list.push(
+        Variable::real("power_electric", 151, Some("W"), "Power that enters at the motor terminals")
+            .output()
+            .nominal(10.0),
+    );
     list.push(Variable::real("energy", 152, Some("J"), "Kinetic, potential, magnetic and end-stop energy").output());
     list
 }
@@ -175,17 +187,43 @@ fn parameters() -> Vec<Variable> {
         real(2001, "d_max", Some("m"), d::D_MAX, -INF, INF, "End stop: longest limb").display("cm"),
         real(2002, "theta_min", Some("rad"), d::THETA_MIN, -INF, INF, "End stop: lowest limb angle").display("deg"),
         real(2003, "theta_max", Some("rad"), d::THETA_MAX, -INF, INF, "End stop: highest limb angle").display("deg"),
-        real(2004, "stop_stiffness", Some("N/m"), d::STOP_STIFFNESS, 0.0, INF, "End stops: stiffness; at a lever r_b for angles")
-            .nominal(1e6),
-        real(2005, "stop_damping", Some("N.s/m"), d::STOP_DAMPING, 0.0, INF, "End stops: damping; at a lever r_b for angles")
-            .nominal(1e3),
+        real(
+            2004,
+            "stop_stiffness",
+            Some("N/m"),
+            d::STOP_STIFFNESS,
+            0.0,
+            INF,
+            "End stops: stiffness; at a lever r_b for angles",
+        )
+        .nominal(1e6),
+        real(
+            2005,
+            "stop_damping",
+            Some("N.s/m"),
+            d::STOP_DAMPING,
+            0.0,
+            INF,
+            "End stops: damping; at a lever r_b for angles",
+        )
+        .nominal(1e3),
         real(2006, "heave_start", Some("m"), d::START_HEAVE, -INF, INF, "Initial heave").display("cm"),
         real(2007, "tilt_x_start", Some("rad"), d::START_TILT_X, -INF, INF, "Initial tilt_x").display("deg"),
         real(2008, "tilt_y_start", Some("rad"), d::START_TILT_Y, -INF, INF, "Initial tilt_y").display("deg"),
-        real(2009, "relative_tolerance", None, 0.0, 0.0, 0.1, "Co-simulation solver's tolerance; 0: that of the experiment")
-            .nominal(1e-6),
+        real(
+            2009,
+            "relative_tolerance",
+            None,
+            0.0,
+            0.0,
+            0.1,
+            "Co-simulation solver's tolerance; 0: that of the experiment",
+        )
+        .nominal(1e-6),
         real(2010, "max_step", Some("s"), 0.01, 1e-7, INF, "Co-simulation solver's largest step").nominal(1e-3),
-        Variable::boolean("settled_start", 2000, "Initial currents hold the initial pose").parameter().start_boolean(true),
+        Variable::boolean("settled_start", 2000, "Initial currents hold the initial pose")
+            .parameter()
+            .start_boolean(true),
     ]
 }
 

@@ -1,0 +1,2 @@
+//! Reference, estimator, sensors, control law and swarm.
+#![forbid(unsafe_code)]

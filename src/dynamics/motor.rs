@@ -1,0 +1,84 @@
+//! DC motors (2.3) and their drives.
+
+use nalgebra::Vector3;
+
+use super::MechanismParameters;
+use super::state::lift;
+use crate::scalar::Scalar;
+
+/// A motor seen through its transmission: rotor angle = ratio x joint displacement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drive<T> {
+    /// Joint force (N) or torque (N.m) per ampere; back-emf (V) per joint rate.
+    pub force_constant: T,
+    /// Rotor inertia at the joint, kg or kg.m2.
+    pub reflected_inertia: T,
+    /// Rotor friction at the joint, N.s/m or N.m.s/rad.
+    pub reflected_friction: T,
+}
+
+/// The six motors; without revolute motors the second drive is absent (all zero).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Motors<T> {
+    /// Through the screw, ratio 2 pi / lead (rad/m).
+    pub leg: Drive<T>,
+    /// Through the gear.
+    pub revolute: Drive<T>,
+    /// There are motors on the revolute joints.
+    pub revolute_motors: bool,
+    /// Armature inductance, H.
+    pub inductance: T,
+    /// Armature resistance, Ohm.
+    pub resistance: T,
+    /// Terminal voltage limit, V.
+    pub v_max: T,
+}
+
+impl<T: Scalar> Drive<T> {
+    fn new(parameters: &MechanismParameters, ratio: f64) -> Self {
+        Self {
+            force_constant: lift(ratio * parameters.motor_kt),
+            reflected_inertia: lift(ratio * ratio * parameters.motor_jm),
+            reflected_friction: lift(ratio * ratio * parameters.motor_bm),
+        }
+    }
+}
+
+impl<T: Scalar> Motors<T> {
+    pub(super) fn new(parameters: &MechanismParameters) -> Self {
+        let ratio = if parameters.revolute_motors { parameters.gear_ratio } else { 0.0 };
+        Self {
+            leg: Drive::new(parameters, std::f64::consts::TAU / parameters.screw_lead),
+            revolute: Drive::new(parameters, ratio),
+            revolute_motors: parameters.revolute_motors,
+            inductance: lift(parameters.motor_la),
+            resistance: lift(parameters.motor_ra),
+            v_max: lift(parameters.v_max),
+        }
+    }
+
+    /// The voltage that reaches the terminals, V.
+    #[inline]
+    pub fn limit(&self, voltage: T) -> T {
+        if voltage > self.v_max {
+            self.v_max
+        } else if voltage < -self.v_max {
+            -self.v_max
+        } else {
+            voltage
+        }
+    }
+
+    /// Rates of three currents (2.3), A/s, from the demanded voltages and the joint rates.
+    #[inline]
+    pub fn current_rates(
+        &self,
+        drive: &Drive<T>,
+        voltages: &Vector3<T>,
+        currents: &Vector3<T>,
+        joint_rates: &Vector3<T>,
+    ) -> Vector3<T> {
+        let limited = voltages.map(|v| self.limit(v));
+        (limited - currents * self.resistance - joint_rates * drive.force_constant) / self.inductance
+    }
+}

@@ -1,0 +1,206 @@
+//! An explicit embedded Runge-Kutta method with error control: Dormand & Prince's pair 5(4).
+//!
+//! Dormand, J. R., Prince, P. J.: A family of embedded Runge-Kutta formulae. Journal of
+//! Computational and Applied Mathematics 6 (1980), doi:10.1016/0771-050X(80)90013-3.
+//! Works in place, without allocation; what persists between calls is the step size alone.
+
+use nalgebra::SVector;
+use serde::{Deserialize, Serialize};
+
+/// Accuracy and limits.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings<const N: usize> {
+    /// Largest local error a step, relative to max(|x_i|, `nominal[i]`).
+    pub tolerance: f64,
+    /// Magnitude below which a component's error counts as absolute.
+    pub nominal: SVector<f64, N>,
+    /// Largest step, s.
+    pub max_step: f64,
+}
+
+/// Why an integration stopped early.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum SolverError {
+    #[error("the solver's step fell below {step:e} s at {time} s: the solution diverges or is not smooth")]
+    StepTooSmall { time: f64, step: f64 },
+    #[error("the solver gave up at {time} s after {steps} steps")]
+    TooManySteps { time: f64, steps: u64 },
+}
+
+/// The method's memory between calls.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Solver {
+    /// Step that the last error estimate allows, s; 0 before the first call.
+    step: f64,
+    /// Right-hand sides evaluated so far.
+    pub evaluations: u64,
+}
+
+/// The first step's length as a fraction of the tolerance's fifth root: a cautious start.
+const FIRST_STEP: f64 = 1e-3;
+const SAFETY: f64 = 0.9;
+/// Largest change of the step, down and up.
+const SHRINK: f64 = 0.2;
+const GROW: f64 = 5.0;
+
+// Nodes, stages and the weights of the error estimate.
+const C: [f64; 5] = [1.0 / 5.0, 3.0 / 10.0, 4.0 / 5.0, 8.0 / 9.0, 1.0];
+const A2: [f64; 1] = [1.0 / 5.0];
+const A3: [f64; 2] = [3.0 / 40.0, 9.0 / 40.0];
+const A4: [f64; 3] = [44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0];
+const A5: [f64; 4] = [19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0];
+const A6: [f64; 5] = [9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0];
+const B: [f64; 6] = [35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0];
+const ERROR: [f64; 7] =
+    [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0];
+
+impl Solver {
+    /// Integrates x_dot = f(t, x) from `from` to `to` > `from` (s) in place.
+    ///
+    /// # Errors
+    /// When the step becomes too small (the solution diverges) or too many steps are needed; `x` is
+    /// then the last accepted state.
+    pub fn integrate<const N: usize>(
+        &mut self,
+        f: impl Fn(f64, &SVector<f64, N>) -> SVector<f64, N>,
+        x: &mut SVector<f64, N>,
+        from: f64,
+        to: f64,
+        settings: &Settings<N>,
+    ) -> Result<(), SolverError> {
+        // offsets from `from`, so that a late start time costs no digits of the step
+        let span = to - from;
+        let most_steps = 200_000 + (span * 50_000.0) as u64;
+        let mut t = 0.0;
+        let mut steps = 0;
+        let mut step =
+            if self.step > 0.0 { self.step } else { FIRST_STEP * libm::pow(settings.tolerance, 0.2).min(1.0) };
+        let mut k1 = f(from, x);
+        self.evaluations += 1;
+        while t < span {
+            let remaining = span - t;
+            let wanted = step.min(settings.max_step);
+            // no tiny last step: take the rest whole or halve it
+            let h = if wanted >= 0.99 * remaining {
+                remaining
+            } else if wanted > 0.5 * remaining {
+                0.5 * remaining
+            } else {
+                wanted
+            };
+            let (next, k7, error) = attempt(&f, x, &k1, from + t, h, settings);
+            self.evaluations += 6;
+            steps += 1;
+            let factor = if error.is_finite() { (SAFETY * libm::pow(error, -0.2)).clamp(SHRINK, GROW) } else { SHRINK };
+            if error <= 1.0 {
+                t = if h == remaining { span } else { t + h };
+                *x = next;
+                k1 = k7;
+                // a step cut short by the end of the interval says nothing against a longer one
+                step = if h < wanted { wanted.max(h * factor) } else { h * factor };
+            } else {
+                step = h * factor.min(1.0);
+                if step < 1e-14 * (1.0 + from.abs()) {
+                    return Err(SolverError::StepTooSmall { time: from + t, step });
+                }
+            }
+            if steps > most_steps {
+                return Err(SolverError::TooManySteps { time: from + t, steps });
+            }
+        }
+        self.step = step;
+        Ok(())
+    }
+}
+
+/// One step of length `h`: the new state, its derivative and the scaled error estimate.
+#[inline]
+fn attempt<const N: usize>(
+    f: &impl Fn(f64, &SVector<f64, N>) -> SVector<f64, N>,
+    x: &SVector<f64, N>,
+    k1: &SVector<f64, N>,
+    t: f64,
+    h: f64,
+    settings: &Settings<N>,
+) -> (SVector<f64, N>, SVector<f64, N>, f64) {
+    let k2 = f(t + C[0] * h, &(x + k1 * (A2[0] * h)));
+    let k3 = f(t + C[1] * h, &combine(x, h, A3, [k1, &k2]));
+    let k4 = f(t + C[2] * h, &combine(x, h, A4, [k1, &k2, &k3]));
+    let k5 = f(t + C[3] * h, &combine(x, h, A5, [k1, &k2, &k3, &k4]));
+    let k6 = f(t + C[4] * h, &combine(x, h, A6, [k1, &k2, &k3, &k4, &k5]));
+    let next = combine(x, h, B, [k1, &k2, &k3, &k4, &k5, &k6]);
+    let k7 = f(t + h, &next);
+    let estimate = combine(&SVector::zeros(), h, ERROR, [k1, &k2, &k3, &k4, &k5, &k6, &k7]);
+    let mut error: f64 = 0.0;
+    for i in 0..N {
+        let scale = settings.tolerance * settings.nominal[i].max(x[i].abs()).max(next[i].abs());
+        let ratio = estimate[i].abs() / scale;
+        // f64::max would swallow a NaN
+        if ratio.is_nan() {
+            return (next, k7, f64::NAN);
+        }
+        error = error.max(ratio);
+    }
+    (next, k7, error)
+}
+
+/// x + h sum(weights[j] k[j])
+#[inline]
+fn combine<const N: usize, const S: usize>(
+    x: &SVector<f64, N>,
+    h: f64,
+    weights: [f64; S],
+    k: [&SVector<f64, N>; S],
+) -> SVector<f64, N> {
+    SVector::from_fn(|i, _| {
+        let mut sum = 0.0;
+        for j in 0..S {
+            sum += weights[j] * k[j][i];
+        }
+        x[i] + h * sum
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn oscillator_error(tolerance: f64) -> f64 {
+        let settings = Settings { tolerance, nominal: SVector::from([1.0, 1.0]), max_step: f64::INFINITY };
+        let mut x = SVector::from([1.0, 0.0]);
+        Solver::default().integrate(|_, x| SVector::from([x[1], -x[0]]), &mut x, 3.0, 13.0, &settings).unwrap();
+        (x - SVector::from([10.0_f64.cos(), -(10.0_f64.sin())])).amax()
+    }
+
+    #[test]
+    fn harmonic_oscillator_is_as_accurate_as_asked() {
+        for tolerance in [1e-4, 1e-6, 1e-9, 1e-12] {
+            let error = oscillator_error(tolerance);
+            // local errors of some dozen steps add up
+            assert!(error < 50.0 * tolerance, "{error:e} at {tolerance:e}");
+        }
+    }
+
+    #[test]
+    fn the_method_is_of_fifth_order() {
+        // two fixed steps of h and 2h: the error of one step grows with h^6
+        let settings = Settings { tolerance: 1e30, nominal: SVector::from([1.0]), max_step: f64::INFINITY };
+        let error = |h: f64| {
+            let x = SVector::from([1.0]);
+            let f = |t: f64, x: &SVector<f64, 1>| SVector::from([x[0] * (2.0 * t).cos()]);
+            let (next, ..) = attempt(&f, &x, &f(0.0, &x), 0.0, h, &settings);
+            (next[0] - (0.5 * (2.0 * h).sin()).exp()).abs()
+        };
+        let order = (error(0.2) / error(0.1)).log2();
+        assert!((5.5..6.7).contains(&order), "{order}");
+    }
+
+    #[test]
+    fn a_solution_that_blows_up_is_an_error_and_not_a_hang() {
+        let settings = Settings { tolerance: 1e-6, nominal: SVector::from([1.0]), max_step: 1.0 };
+        let mut x = SVector::from([1.0]);
+        // x = 1 / (1 - t)
+        let outcome = Solver::default().integrate(|_, x| SVector::from([x[0] * x[0]]), &mut x, 0.0, 2.0, &settings);
+        assert!(matches!(outcome, Err(SolverError::StepTooSmall { .. } | SolverError::TooManySteps { .. })));
+    }
+}

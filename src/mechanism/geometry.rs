@@ -1,0 +1,45 @@
+//! The mechanism's constant geometry.
+
+use nalgebra::Vector3;
+
+use crate::scalar::{Scalar, constant};
+
+/// Base and platform geometry. Lengths in m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Geometry<T> {
+    /// Radius a of the circle of the revolute joints A_i, m.
+    pub base_radius: T,
+    /// Radius r_b = w / sqrt(3) of the circle of the spherical joints B_i, m.
+    pub joint_radius: T,
+    /// Radial unit vectors e_i of the limbs' planes.
+    pub radial: [Vector3<T>; 3],
+    /// Unit vectors n_i = z x e_i along the revolute joints, normal to the limbs' planes.
+    pub lateral: [Vector3<T>; 3],
+}
+
+impl<T: Scalar> Geometry<T> {
+    /// From the base circle's radius a and the spherical joints' spacing w, both in m.
+    pub fn new(base_radius: f64, joint_spacing: f64) -> Self {
+        let half_sqrt_3 = 0.5 * 3.0_f64.sqrt();
+        let directions = [(1.0, 0.0), (-0.5, half_sqrt_3), (-0.5, -half_sqrt_3)];
+        let vector = |x: f64, y: f64| Vector3::new(constant(x), constant(y), T::zero());
+        Self {
+            base_radius: constant(base_radius),
+            joint_radius: constant(joint_spacing / 3.0_f64.sqrt()),
+            radial: directions.map(|(c, s)| vector(c, s)),
+            lateral: directions.map(|(c, s)| vector(-s, c)),
+        }
+    }
+
+    /// Height-less position of P from limb lengths (m) and angles (rad): mean(B_i), without asking
+    /// whether the three points fit a rigid platform. The paper's P formula (section 6.1).
+    pub fn mean_joint_position(&self, lengths: [T; 3], angles: [T; 3]) -> Vector3<T> {
+        let mut sum = Vector3::zeros();
+        for i in 0..3 {
+            let (sin, cos) = (angles[i].sin(), angles[i].cos());
+            sum += self.radial[i] * (self.base_radius - lengths[i] * cos);
+            sum.z += lengths[i] * sin;
+        }
+        sum / constant::<T>(3.0)
+    }
+}

@@ -1,0 +1,5 @@
+//! Rps3Controller.
+
+pub mod table;
+
+pub struct Controller;

@@ -1,0 +1,5 @@
+//! Rps3Plant.
+
+pub mod table;
+
+pub struct Plant;
