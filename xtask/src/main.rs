@@ -1,1 +1,54 @@
-fn main() {}
+//! The project's chores: `cargo xtask <command>`. One module a command; a new command is a module
+//! with `run` and a line in [`Task`] and in `main`.
+#![forbid(unsafe_code)]
+
+mod archive;
+mod command;
+mod demo;
+mod describe;
+mod fmu;
+mod library;
+mod lint;
+mod package;
+mod platform;
+mod python;
+mod setup;
+mod ssp;
+mod test;
+mod workspace;
+
+use clap::{Parser, Subcommand};
+
+#[derive(Parser)]
+#[command(name = "cargo xtask", about = "The project's chores", version)]
+struct Cli {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Create .venv with the pinned Python packages (nothing to do when it is up to date)
+    Setup,
+    /// Refresh modelDescription/*.xml from the variable tables
+    Describe,
+    /// Build both FMUs and the SSP package into dist/
+    Package(package::Options),
+    /// Couple the packaged FMUs through the singularity and write dist/report/
+    Demo(demo::Options),
+    /// Run every test: Rust, then the packaged FMUs through Python
+    Test(test::Options),
+    /// Check format, lints, documentation and Python code
+    Lint,
+}
+
+fn main() -> anyhow::Result<()> {
+    match Cli::parse().task {
+        Task::Setup => setup::run(),
+        Task::Describe => describe::run(),
+        Task::Package(options) => package::run(&options),
+        Task::Demo(options) => demo::run(&options),
+        Task::Test(options) => test::run(&options),
+        Task::Lint => lint::run(),
+    }
+}

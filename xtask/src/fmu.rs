@@ -1,0 +1,72 @@
+//! The two FMUs and what goes into their archives.
+
+use std::fs;
+
+use anyhow::{Context, Result};
+
+use crate::archive::Archive;
+use crate::library::Build;
+use crate::{platform, workspace};
+
+/// One of the FMUs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Fmu {
+    /// FMI's `modelIdentifier`, also the library's target name and the archive's stem.
+    pub identifier: &'static str,
+    /// Its directory under `fmus/`; name of its component in the SSP package.
+    pub component: &'static str,
+}
+
+/// The controller's plant.
+pub const PLANT: Fmu = Fmu { identifier: "Rps3Plant", component: "plant" };
+/// The plant's controller.
+pub const CONTROLLER: Fmu = Fmu { identifier: "Rps3Controller", component: "controller" };
+/// In the order in which a sequential master calls them.
+pub const ALL: [Fmu; 2] = [CONTROLLER, PLANT];
+
+const LICENSE: &str = "\
+The FMU is licensed under the MIT license (LICENSE-MIT.txt) or the Apache License, version 2.0
+(LICENSE-APACHE.txt), at your option.
+";
+
+impl Fmu {
+    /// File name of the model description, in the build's output and in `modelDescription/`.
+    pub fn description_file(&self) -> String {
+        format!("{}.xml", self.identifier)
+    }
+
+    /// File name of the archive.
+    pub fn archive_file(&self) -> String {
+        format!("{}.fmu", self.identifier)
+    }
+
+    /// The model description that belongs to the build's libraries.
+    ///
+    /// # Errors
+    /// When it cannot be read.
+    pub fn description(&self, build: &Build) -> Result<String> {
+        let path = build.descriptions.join(self.description_file());
+        fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))
+    }
+
+    /// The FMU's archive for the host's platform (FMI 2.0, section 2.3.1). What lies in
+    /// `fmus/<component>/archive/` goes in as it is.
+    ///
+    /// # Errors
+    /// When a part is missing or the platform has no name in FMI 2.0.
+    pub fn archive(&self, build: &Build) -> Result<Archive> {
+        let platform = platform::host()?;
+        let library =
+            build.libraries.get(self.identifier).with_context(|| format!("no library {}", self.identifier))?;
+        let binary = format!("binaries/{}/{}.{}", platform.directory, self.identifier, platform.extension);
+        let mut archive = Archive::default();
+        archive.insert_tree(&workspace::root().join("fmus").join(self.component).join("archive"))?;
+        archive.insert("modelDescription.xml", self.description(build)?);
+        archive.insert_file(binary, library)?;
+        archive.insert("documentation/licenses/license.txt", LICENSE);
+        for license in ["LICENSE-MIT", "LICENSE-APACHE"] {
+            archive.insert_file(format!("documentation/licenses/{license}.txt"), &workspace::root().join(license))?;
+        }
+        Ok(archive)
+    }
+}
