@@ -1,0 +1,124 @@
+"""Writes the study's report: CSV files, plots, and the tables in Markdown and HTML."""
+
+from __future__ import annotations
+
+import html
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from rps3_study import design_study, plots
+from rps3_study.couple import Run
+from rps3_study.metrics import Figures
+from rps3_study.metrics import figures as figures_of
+from rps3_study.tasks import Task
+
+
+@dataclass(frozen=True)
+class Case:
+    """The runs of one task with one actuation variant, by control mode."""
+
+    task: Task
+    variant: str
+    runs: Mapping[str, Run]
+
+    @property
+    def stem(self) -> str:
+        """Stem of this case's file names."""
+        return f"{self.task.key}-{self.variant.replace(' ', '-')}"
+
+
+def write(directory: Path, cases: list[Case], radius: float) -> Path:
+    """Writes the report into `directory` and returns its HTML page; `radius` as in `metrics.pose_error`."""
+    directory.mkdir(parents=True, exist_ok=True)
+    markdown = ["# Crossing a direct singularity", "", _INTRODUCTION, ""]
+    page = ["<h1>Crossing a direct singularity</h1>", f"<p>{html.escape(_INTRODUCTION)}</p>"]
+    for case in cases:
+        title = f"{case.task.title}, {case.variant}"
+        header, rows = table(case, radius)
+        markdown += [f"## {title}", "", markdown_table(header, rows), ""]
+        page += [f"<h2>{html.escape(title)}</h2>", html_table(header, rows)]
+        for mode, run in case.runs.items():
+            stem = f"{case.stem}-{mode.lower().replace('+', '-')}"
+            _write_csv(directory / f"{stem}.csv", run)
+        for stem, panels in plots.figures(radius).items():
+            image = f"{case.stem}-{stem}.svg"
+            plots.draw(directory / image, title, case.runs, panels)
+            markdown += [f"![{stem}]({image})", ""]
+            page += [f'<p><img src="{image}" alt="{stem}"></p>']
+    (directory / "report.md").write_text("\n".join(markdown), encoding="utf-8")
+    index = directory / "index.html"
+    index.write_text(_PAGE.format(body="\n".join(page)), encoding="utf-8")
+    return index
+
+
+def table(case: Case, radius: float) -> tuple[list[str], list[list[str]]]:
+    """Header and rows of a case's table, with the design study's figures where there are some."""
+    compared = case.task.key == design_study.TASK
+    header = ["mode", "peak error, mm", "rms error, mm", "peak voltage, V", "saturated, ms"]
+    header += ["peak error of the design study, mm"] if compared else []
+    header += ["remarks"]
+    rows = []
+    for mode, run in case.runs.items():
+        result: Figures = figures_of(run, radius)
+        row = [mode, *map(_number, (result.peak_error, result.rms_error, result.peak_voltage))]
+        row.append(_number(1e3 * result.saturation_time))
+        if compared:
+            row.append(_number(design_study.PEAK_ERROR.get((case.variant, mode), math.nan)))
+        rows.append([*row, f"ended early: {result.failure}" if result.failure else ""])
+    return header, rows
+
+
+def markdown_table(header: list[str], rows: list[list[str]]) -> str:
+    """A table in GitHub's Markdown; all columns but the first and last to the right."""
+    rule = ["---", *["---:"] * (len(header) - 2), "---"]
+    lines = [header, rule, *([cell.replace("|", "\\|") for cell in row] for row in rows)]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def html_table(header: list[str], rows: list[list[str]]) -> str:
+    """The same table in HTML."""
+    head = "".join(f"<th>{html.escape(cell)}</th>" for cell in header)
+    body = "\n".join("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in rows)
+    return f"<table><thead><tr>{head}</tr></thead><tbody>\n{body}\n</tbody></table>"
+
+
+def _number(value: float) -> str:
+    return "" if math.isnan(value) else f"{value:.3g}"
+
+
+def _write_csv(path: Path, run: Run) -> None:
+    np.savetxt(
+        path,
+        np.column_stack(list(run.values.values())),
+        fmt="%.9g",
+        delimiter=",",
+        header=",".join(run.values),
+        comments="",
+    )
+
+
+_INTRODUCTION = (
+    "Both FMUs, coupled by FMPy at 1 kHz, controller first at each step. The pose error is the largest of the heave "
+    "error and r_b times the tilt errors, r_b being the radius of the spherical joints' circle. RAC: resolved "
+    "acceleration; DRAC: damped accelerations; HDRAC: damped velocities as well; fixed factors but for MPSO, which "
+    "searches them at each sample. The design study knew the pose exactly and searched a grid in place of the swarm."
+)
+
+_PAGE = """<!DOCTYPE html>
+<html lang="en">
+<meta charset="utf-8">
+<title>3-RPS: crossing a direct singularity</title>
+<style>
+body {{ font: 16px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; }}
+table {{ border-collapse: collapse; }}
+th, td {{ padding: 0.2rem 0.7rem; border-bottom: 1px solid #ccc; text-align: right; }}
+th:first-child, td:first-child, th:last-child, td:last-child {{ text-align: left; }}
+img {{ max-width: 100%; }}
+</style>
+{body}
+</html>
+"""
