@@ -14,7 +14,7 @@ use rps3::scalar::Scalar;
 fn model<T: Scalar>(revolute_motors: bool) -> PlantModel<T> {
     let mut parameters = PlantParameters::default();
     parameters.mechanism.revolute_motors = revolute_motors;
-    PlantModel::new(&parameters)
+    PlantModel::new(&parameters.map(T::from))
 }
 
 prop_compose! {

@@ -9,7 +9,7 @@ use rps3::mechanism::{Geometry, Limb, OverallJacobian, Pose, normalized_det_a, s
 const DEG: f64 = std::f64::consts::PI / 180.0;
 
 fn geometry<T: rps3::scalar::Scalar>() -> Geometry<T> {
-    Geometry::new(rps3::defaults::BASE_RADIUS, rps3::defaults::JOINT_SPACING)
+    Geometry::new(rps3::defaults::BASE_RADIUS.into(), rps3::defaults::JOINT_SPACING.into())
 }
 
 fn tilted(heave: f64, tilt: f64, direction: f64) -> Vector3<f64> {

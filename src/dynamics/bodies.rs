@@ -2,7 +2,6 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::state::lift;
 use super::{MechanismParameters, Motors};
 use crate::mechanism::{Limb, LimbMotion, Pose, PoseMotion};
 use crate::scalar::{Scalar, constant};
@@ -38,17 +37,17 @@ pub struct MechanismDynamics<T> {
 }
 
 impl<T: Scalar> Bodies<T> {
-    pub(super) fn new(p: &MechanismParameters) -> Self {
+    pub(super) fn new(p: &MechanismParameters<T>) -> Self {
         let (ixx, izz) = p.plate_inertia();
         Self {
-            plate_mass: lift(p.plate_mass),
-            plate_ixx: lift(ixx),
-            plate_izz: lift(izz),
-            lower_moment: lift(p.lower_mass * p.lower_com),
-            limb_inertia: lift(p.lower_inertia + p.lower_mass * p.lower_com * p.lower_com + p.upper_inertia),
-            upper_mass: lift(p.upper_mass),
-            upper_com: lift(p.upper_com),
-            gravity: lift(p.gravity),
+            plate_mass: p.plate_mass,
+            plate_ixx: ixx,
+            plate_izz: izz,
+            lower_moment: p.lower_mass * p.lower_com,
+            limb_inertia: p.lower_inertia + p.lower_mass * p.lower_com * p.lower_com + p.upper_inertia,
+            upper_mass: p.upper_mass,
+            upper_com: p.upper_com,
+            gravity: p.gravity,
         }
     }
 

@@ -1,7 +1,6 @@
 //! Smooth one-sided end stops of limb lengths and angles.
 
 use super::PlantParameters;
-use super::state::lift;
 use crate::mechanism::Geometry;
 use crate::scalar::{Scalar, constant};
 
@@ -74,18 +73,18 @@ pub struct EndStops<T> {
 }
 
 impl<T: Scalar> EndStops<T> {
-    pub(super) fn new(parameters: &PlantParameters) -> Self {
+    pub(super) fn new(parameters: &PlantParameters<T>) -> Self {
         let lever =
-            Geometry::<f64>::new(parameters.mechanism.base_radius, parameters.mechanism.joint_spacing).joint_radius;
-        let stop = |min, max, lever: f64| EndStop {
-            min: lift(min),
-            max: lift(max),
-            stiffness: lift(parameters.stop_stiffness * lever * lever),
-            damping: lift(parameters.stop_damping * lever * lever),
-            width: lift(WIDTH / lever),
+            Geometry::new(parameters.mechanism.base_radius, parameters.mechanism.joint_spacing).joint_radius;
+        let stop = |min, max, lever: T| EndStop {
+            min,
+            max,
+            stiffness: parameters.stop_stiffness * lever * lever,
+            damping: parameters.stop_damping * lever * lever,
+            width: constant::<T>(WIDTH) / lever,
         };
         Self {
-            length: stop(parameters.d_min, parameters.d_max, 1.0),
+            length: stop(parameters.d_min, parameters.d_max, T::one()),
             angle: stop(parameters.theta_min, parameters.theta_max, lever),
         }
     }

@@ -91,21 +91,21 @@ pub fn static_load<T: Scalar>(model: &PlantModel<T>, s: &Vector3<T>, inputs: &In
 /// Currents (leg, revolute; A) that hold the pose `s` at rest: of smallest norm with six motors,
 /// unique with three. `None` where three motors cannot (direct singularity) or a motor would need
 /// more than its voltage limit.
-pub fn settled_currents(
-    model: &PlantModel<f64>,
-    s: &Vector3<f64>,
-    inputs: &Inputs<f64>,
-) -> Option<(Vector3<f64>, Vector3<f64>)> {
+pub fn settled_currents<T: Scalar>(
+    model: &PlantModel<T>,
+    s: &Vector3<T>,
+    inputs: &Inputs<T>,
+) -> Option<(Vector3<T>, Vector3<T>)> {
     let load = static_load(model, s, inputs);
     let pose = Pose::new(&model.geometry, s);
     let limbs = Limb::all(&model.geometry, &pose);
     let (leg_map, revolute_map) = current_maps(model, &limbs);
     let (leg, revolute) = if model.motors.revolute_motors {
         let gram = leg_map * leg_map.transpose() + revolute_map * revolute_map.transpose();
-        let multiplier = gram.lu().solve(&load)?;
+        let multiplier = solve_positive_definite(&gram, &load);
         (leg_map.tr_mul(&multiplier), revolute_map.tr_mul(&multiplier))
     } else {
-        (leg_map.lu().solve(&load)?, Vector3::zeros())
+        (leg_map.try_inverse()? * load, Vector3::zeros())
     };
     let limit = model.motors.v_max / model.motors.resistance;
     (leg.amax() <= limit && revolute.amax() <= limit).then_some((leg, revolute))

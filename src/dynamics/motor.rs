@@ -3,8 +3,7 @@
 use nalgebra::Vector3;
 
 use super::MechanismParameters;
-use super::state::lift;
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, constant};
 
 /// A motor seen through its transmission: rotor angle = ratio x joint displacement.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,25 +34,25 @@ pub struct Motors<T> {
 }
 
 impl<T: Scalar> Drive<T> {
-    fn new(parameters: &MechanismParameters, ratio: f64) -> Self {
+    fn new(parameters: &MechanismParameters<T>, ratio: T) -> Self {
         Self {
-            force_constant: lift(ratio * parameters.motor_kt),
-            reflected_inertia: lift(ratio * ratio * parameters.motor_jm),
-            reflected_friction: lift(ratio * ratio * parameters.motor_bm),
+            force_constant: ratio * parameters.motor_kt,
+            reflected_inertia: ratio * ratio * parameters.motor_jm,
+            reflected_friction: ratio * ratio * parameters.motor_bm,
         }
     }
 }
 
 impl<T: Scalar> Motors<T> {
-    pub(super) fn new(parameters: &MechanismParameters) -> Self {
-        let ratio = if parameters.revolute_motors { parameters.gear_ratio } else { 0.0 };
+    pub(super) fn new(parameters: &MechanismParameters<T>) -> Self {
+        let ratio = if parameters.revolute_motors { parameters.gear_ratio } else { T::zero() };
         Self {
-            leg: Drive::new(parameters, std::f64::consts::TAU / parameters.screw_lead),
+            leg: Drive::new(parameters, constant::<T>(std::f64::consts::TAU) / parameters.screw_lead),
             revolute: Drive::new(parameters, ratio),
             revolute_motors: parameters.revolute_motors,
-            inductance: lift(parameters.motor_la),
-            resistance: lift(parameters.motor_ra),
-            v_max: lift(parameters.v_max),
+            inductance: parameters.motor_la,
+            resistance: parameters.motor_ra,
+            v_max: parameters.v_max,
         }
     }
 

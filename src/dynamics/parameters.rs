@@ -1,72 +1,75 @@
 //! Parameters of the mechanism and the plant, and what makes them possible.
 
 use crate::defaults as d;
+use crate::scalar::{Scalar, constant};
 
 /// Geometry, masses, drives and motors. The controller's model of the plant has the same.
+///
+/// Generic like the model equations, so that derivatives with respect to parameters exist as well.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct MechanismParameters {
+pub struct MechanismParameters<T = f64> {
     /// Radius a of the base joints' circle, m.
-    pub base_radius: f64,
+    pub base_radius: T,
     /// Distance w between the spherical joints, m.
-    pub joint_spacing: f64,
+    pub joint_spacing: T,
     /// Radius b of the plate, m; only feeds its default inertia.
-    pub plate_radius: f64,
+    pub plate_radius: T,
     /// Mass of the platform, kg.
-    pub plate_mass: f64,
+    pub plate_mass: T,
     /// Inertia of the platform about its in-plane axes through P, kg.m2; 0: uniform disc.
-    pub plate_ixx: f64,
+    pub plate_ixx: T,
     /// Inertia of the platform about its normal, kg.m2; 0: uniform disc.
-    pub plate_izz: f64,
+    pub plate_izz: T,
     /// Mass of a lower link, kg.
-    pub lower_mass: f64,
+    pub lower_mass: T,
     /// Lower link's centre of mass from A, m.
-    pub lower_com: f64,
+    pub lower_com: T,
     /// Lower link's inertia about its centre of mass, kg.m2.
-    pub lower_inertia: f64,
+    pub lower_inertia: T,
     /// Mass of an upper link, kg.
-    pub upper_mass: f64,
+    pub upper_mass: T,
     /// Upper link's centre of mass from B, m.
-    pub upper_com: f64,
+    pub upper_com: T,
     /// Upper link's inertia about its centre of mass, kg.m2.
-    pub upper_inertia: f64,
+    pub upper_inertia: T,
     /// Lead of the leg's screw, m per revolution.
-    pub screw_lead: f64,
+    pub screw_lead: T,
     /// Gear ratio of the revolute drive, 1.
-    pub gear_ratio: f64,
+    pub gear_ratio: T,
     /// Torque and back-emf constant, N.m/A.
-    pub motor_kt: f64,
+    pub motor_kt: T,
     /// Rotor inertia, kg.m2.
-    pub motor_jm: f64,
+    pub motor_jm: T,
     /// Viscous friction at the rotor, N.m.s/rad.
-    pub motor_bm: f64,
+    pub motor_bm: T,
     /// Armature inductance, H.
-    pub motor_la: f64,
+    pub motor_la: T,
     /// Armature resistance, Ohm.
-    pub motor_ra: f64,
+    pub motor_ra: T,
     /// Gravitational acceleration along -z, m/s2.
-    pub gravity: f64,
+    pub gravity: T,
     /// Terminal voltage limit, V.
-    pub v_max: f64,
+    pub v_max: T,
     /// Six motors; else the three leg motors alone.
     pub revolute_motors: bool,
 }
 
 /// The plant's parameters.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct PlantParameters {
-    pub mechanism: MechanismParameters,
+pub struct PlantParameters<T = f64> {
+    pub mechanism: MechanismParameters<T>,
     /// End stops of the limb lengths, m.
-    pub d_min: f64,
-    pub d_max: f64,
+    pub d_min: T,
+    pub d_max: T,
     /// End stops of the limb angles, rad.
-    pub theta_min: f64,
-    pub theta_max: f64,
+    pub theta_min: T,
+    pub theta_max: T,
     /// Stiffness of the end stops, N/m (at a lever r_b for angles).
-    pub stop_stiffness: f64,
+    pub stop_stiffness: T,
     /// Damping of the end stops, N.s/m (at a lever r_b for angles).
-    pub stop_damping: f64,
+    pub stop_damping: T,
     /// Initial (heave in m, tilt_x, tilt_y in rad).
-    pub start: [f64; 3],
+    pub start: [T; 3],
     /// Initial currents hold the initial pose.
     pub settled_start: bool,
 }
@@ -159,14 +162,104 @@ pub(crate) fn check(
     Ok(())
 }
 
-impl MechanismParameters {
-    /// Platform inertia about its in-plane axes and its normal, kg.m2.
-    pub fn plate_inertia(&self) -> (f64, f64) {
-        let disc = self.plate_mass * self.plate_radius * self.plate_radius;
-        let or_disc = |given: f64, disc: f64| if given > 0.0 { given } else { disc };
-        (or_disc(self.plate_ixx, 0.25 * disc), or_disc(self.plate_izz, 0.5 * disc))
+impl<T: Scalar> MechanismParameters<T> {
+    /// From a function that tells each parameter's value by its name.
+    pub fn by_name(value: impl Fn(&'static str) -> T, revolute_motors: bool) -> Self {
+        Self {
+            base_radius: value("base_radius"),
+            joint_spacing: value("joint_spacing"),
+            plate_radius: value("plate_radius"),
+            plate_mass: value("plate_mass"),
+            plate_ixx: value("plate_ixx"),
+            plate_izz: value("plate_izz"),
+            lower_mass: value("lower_mass"),
+            lower_com: value("lower_com"),
+            lower_inertia: value("lower_inertia"),
+            upper_mass: value("upper_mass"),
+            upper_com: value("upper_com"),
+            upper_inertia: value("upper_inertia"),
+            screw_lead: value("screw_lead"),
+            gear_ratio: value("gear_ratio"),
+            motor_kt: value("motor_kt"),
+            motor_jm: value("motor_jm"),
+            motor_bm: value("motor_bm"),
+            motor_la: value("motor_la"),
+            motor_ra: value("motor_ra"),
+            gravity: value("gravity"),
+            v_max: value("v_max"),
+            revolute_motors,
+        }
     }
 
+    /// With every number replaced, for instance by a dual number of the same value.
+    pub fn map<U>(&self, f: impl Fn(T) -> U) -> MechanismParameters<U> {
+        MechanismParameters {
+            base_radius: f(self.base_radius),
+            joint_spacing: f(self.joint_spacing),
+            plate_radius: f(self.plate_radius),
+            plate_mass: f(self.plate_mass),
+            plate_ixx: f(self.plate_ixx),
+            plate_izz: f(self.plate_izz),
+            lower_mass: f(self.lower_mass),
+            lower_com: f(self.lower_com),
+            lower_inertia: f(self.lower_inertia),
+            upper_mass: f(self.upper_mass),
+            upper_com: f(self.upper_com),
+            upper_inertia: f(self.upper_inertia),
+            screw_lead: f(self.screw_lead),
+            gear_ratio: f(self.gear_ratio),
+            motor_kt: f(self.motor_kt),
+            motor_jm: f(self.motor_jm),
+            motor_bm: f(self.motor_bm),
+            motor_la: f(self.motor_la),
+            motor_ra: f(self.motor_ra),
+            gravity: f(self.gravity),
+            v_max: f(self.v_max),
+            revolute_motors: self.revolute_motors,
+        }
+    }
+
+    /// Platform inertia about its in-plane axes and its normal, kg.m2.
+    pub fn plate_inertia(&self) -> (T, T) {
+        let disc = self.plate_mass * self.plate_radius * self.plate_radius;
+        let or_disc = |given: T, factor: f64| if given > T::zero() { given } else { disc * constant(factor) };
+        (or_disc(self.plate_ixx, 0.25), or_disc(self.plate_izz, 0.5))
+    }
+}
+
+impl<T: Scalar> PlantParameters<T> {
+    /// From a function that tells each parameter's value by its name.
+    pub fn by_name(value: impl Fn(&'static str) -> T, revolute_motors: bool, settled_start: bool) -> Self {
+        Self {
+            d_min: value("d_min"),
+            d_max: value("d_max"),
+            theta_min: value("theta_min"),
+            theta_max: value("theta_max"),
+            stop_stiffness: value("stop_stiffness"),
+            stop_damping: value("stop_damping"),
+            start: [value("heave_start"), value("tilt_x_start"), value("tilt_y_start")],
+            settled_start,
+            mechanism: MechanismParameters::by_name(value, revolute_motors),
+        }
+    }
+
+    /// With every number replaced, for instance by a dual number of the same value.
+    pub fn map<U>(&self, f: impl Fn(T) -> U) -> PlantParameters<U> {
+        PlantParameters {
+            d_min: f(self.d_min),
+            d_max: f(self.d_max),
+            theta_min: f(self.theta_min),
+            theta_max: f(self.theta_max),
+            stop_stiffness: f(self.stop_stiffness),
+            stop_damping: f(self.stop_damping),
+            start: self.start.map(&f),
+            settled_start: self.settled_start,
+            mechanism: self.mechanism.map(f),
+        }
+    }
+}
+
+impl MechanismParameters {
     /// # Errors
     /// Names the first parameter that no mechanism can have.
     pub fn validate(&self) -> Result<(), ParameterError> {

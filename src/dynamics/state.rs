@@ -4,7 +4,7 @@ use nalgebra::{SVector, Vector3};
 
 use super::{Bodies, EndStops, MechanismParameters, Motors, PlantParameters};
 use crate::mechanism::Geometry;
-use crate::scalar::{Scalar, constant};
+use crate::scalar::Scalar;
 
 /// Number of continuous states.
 pub const STATES: usize = 12;
@@ -45,12 +45,12 @@ pub struct PlantModel<T> {
 
 impl<T: Scalar> PlantModel<T> {
     /// The plant with its end stops. The parameters must have been validated.
-    pub fn new(parameters: &PlantParameters) -> Self {
+    pub fn new(parameters: &PlantParameters<T>) -> Self {
         Self { stops: Some(EndStops::new(parameters)), ..Self::without_stops(&parameters.mechanism) }
     }
 
     /// The mechanism alone.
-    pub fn without_stops(parameters: &MechanismParameters) -> Self {
+    pub fn without_stops(parameters: &MechanismParameters<T>) -> Self {
         Self {
             geometry: Geometry::new(parameters.base_radius, parameters.joint_spacing),
             bodies: Bodies::new(parameters),
@@ -76,9 +76,4 @@ pub(crate) fn rates<T: Scalar>(x: &PlantState<T>) -> Vector3<T> {
 #[inline]
 pub(crate) fn currents<T: Scalar>(x: &PlantState<T>) -> (Vector3<T>, Vector3<T>) {
     (Vector3::new(x[6], x[7], x[8]), Vector3::new(x[9], x[10], x[11]))
-}
-
-/// `value` as a scalar, for constructors that take plain numbers.
-pub(crate) fn lift<T: Scalar>(value: f64) -> T {
-    constant(value)
 }

@@ -19,13 +19,13 @@ pub struct Geometry<T> {
 
 impl<T: Scalar> Geometry<T> {
     /// From the base circle's radius a and the spherical joints' spacing w, both in m.
-    pub fn new(base_radius: f64, joint_spacing: f64) -> Self {
+    pub fn new(base_radius: T, joint_spacing: T) -> Self {
         let half_sqrt_3 = 0.5 * 3.0_f64.sqrt();
         let directions = [(1.0, 0.0), (-0.5, half_sqrt_3), (-0.5, -half_sqrt_3)];
         let vector = |x: f64, y: f64| Vector3::new(constant(x), constant(y), T::zero());
         Self {
-            base_radius: constant(base_radius),
-            joint_radius: constant(joint_spacing / 3.0_f64.sqrt()),
+            base_radius,
+            joint_radius: joint_spacing / constant(3.0_f64.sqrt()),
             radial: directions.map(|(c, s)| vector(c, s)),
             lateral: directions.map(|(c, s)| vector(-s, c)),
         }

@@ -3,7 +3,9 @@
 
 pub mod common_table;
 pub mod controller;
+pub mod descriptions;
 pub mod plant;
+mod slots;
 
 pub use controller::Controller;
 pub use plant::Plant;

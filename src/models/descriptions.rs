@@ -1,0 +1,2 @@
+pub struct X { pub guid: &'static str }
+pub const PLANT: X = X { guid: "" };

@@ -1,0 +1,87 @@
+//! All calculated variables of the plant at a state, generic for exact derivatives.
+
+use nalgebra::{Matrix6, SVector};
+use num_dual::Dual64;
+
+use crate::dynamics::{Inputs, PlantModel, PlantState, STATES, electric_power, energy, evaluate, reactions};
+use crate::mechanism::{OverallJacobian, normalized_det_a};
+use crate::scalar::Scalar;
+
+/// States, other outputs, and the derivatives that are no outputs, in the table's order: it puts
+/// them in one row of consecutive slots.
+pub const CALCULATED: usize = STATES + 41 + 9;
+
+/// The values of all calculated variables.
+pub type Calculated<T> = SVector<T, CALCULATED>;
+
+/// A scalar whose matrices have a smallest singular value that can be computed.
+pub trait SingularValues: Scalar {
+    /// Smallest singular value of `matrix`.
+    fn sigma_min(matrix: &Matrix6<Self>) -> Self;
+}
+
+impl SingularValues for f64 {
+    fn sigma_min(matrix: &Matrix6<f64>) -> f64 {
+        matrix.singular_values_unordered().min()
+    }
+}
+
+impl SingularValues for Dual64 {
+    /// d(sigma) = u^T dJ v
+    fn sigma_min(matrix: &Matrix6<Dual64>) -> Dual64 {
+        let svd = matrix.map(|x| x.re).svd_unordered(true, true);
+        let smallest = svd.singular_values.imin();
+        let derivative = match (svd.u, svd.v_t) {
+            (Some(u), Some(v_t)) => {
+                u.column(smallest).dot(&(matrix.map(|x| x.eps) * v_t.row(smallest).transpose()))
+            }
+            _ => f64::NAN,
+        };
+        Dual64::new(svd.singular_values[smallest], derivative)
+    }
+}
+
+/// Calculated variables at state `x` under `inputs`.
+pub fn calculate<T: SingularValues>(model: &PlantModel<T>, x: &PlantState<T>, inputs: &Inputs<T>) -> Calculated<T> {
+    let e = evaluate(model, x, inputs);
+    let forces = reactions(model, &e, inputs);
+    let acceleration = e.motion.linear_bias + e.pose.linear_map * e.acceleration;
+    let quaternion = e.pose.quaternion();
+    let jacobian = OverallJacobian::new(&model.geometry, &e.limbs);
+    let mut result = Calculated::zeros();
+    let mut row = Row { values: &mut result, next: 0 };
+    row.put(x.as_slice());
+    row.put(&e.limbs.map(|limb| limb.length));
+    row.put(&e.limb_motions.map(|motion| motion.length_rate));
+    row.put(&e.limbs.map(|limb| limb.angle()));
+    row.put(&e.limb_motions.map(|motion| motion.angle_rate));
+    row.put(forces.axial.as_slice());
+    row.put(forces.normal.as_slice());
+    row.put(forces.lateral.as_slice());
+    row.put(e.pose.position.as_slice());
+    row.put(e.motion.velocity.as_slice());
+    row.put(acceleration.as_slice());
+    row.put(e.motion.angular_velocity.as_slice());
+    row.put(quaternion.as_slice());
+    row.put(&[
+        T::sigma_min(&jacobian.matrix),
+        normalized_det_a(&model.geometry, &e.limbs),
+        electric_power(model, x, inputs),
+        energy(model, x),
+    ]);
+    row.put(&e.derivative.as_slice()[3..]);
+    debug_assert_eq!(row.next, CALCULATED);
+    result
+}
+
+struct Row<'a, T> {
+    values: &'a mut Calculated<T>,
+    next: usize,
+}
+
+impl<T: Scalar> Row<'_, T> {
+    fn put(&mut self, values: &[T]) {
+        self.values.as_mut_slice()[self.next..self.next + values.len()].copy_from_slice(values);
+        self.next += values.len();
+    }
+}
