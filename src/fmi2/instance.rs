@@ -1,0 +1,173 @@
+//! An FMU instance: what belongs to its state, and what does not.
+
+use std::collections::BTreeMap;
+use std::ffi::CStr;
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use super::Values;
+use super::call_table::{Function, Mode};
+use super::error::{CallError, CallResult};
+use super::input_derivatives::InputDerivatives;
+use super::layout::Layout;
+use super::logger::Logger;
+use super::model::{Experiment, Model};
+use super::types::{Interface, Status};
+use crate::description::LogCategory;
+
+/// Everything that an FMU state holds: cloned by `fmi2GetFMUstate`, serialized to bytes.
+#[derive(Clone, Serialize, Deserialize)]
+#[serde(bound(serialize = "M: Serialize", deserialize = "M: DeserializeOwned"))]
+pub(super) struct Snapshot<M> {
+    pub interface: Interface,
+    pub mode: Mode,
+    /// Current time, seconds.
+    pub time: f64,
+    pub experiment: Option<Experiment>,
+    pub model: M,
+    pub values: Values,
+    /// An input, parameter, state or the time was changed since the values were computed.
+    pub stale: bool,
+    /// `fmi2NewDiscreteStates` was called in the current Event Mode.
+    pub discrete_states_settled: bool,
+    pub input_derivatives: InputDerivatives,
+}
+
+/// An instance behind an `fmi2Component`.
+pub struct Instance<M> {
+    pub(super) layout: Layout,
+    pub(super) logger: Logger,
+    pub(super) now: Snapshot<M>,
+    /// Model and values at the start of a communication step; kept to step without allocating.
+    pub(super) step_start: (M, Values),
+    /// The states handed out, by the address that is their handle.
+    pub(super) states: BTreeMap<usize, Box<Snapshot<M>>>,
+    /// Slots of unknowns and knowns, for directional derivatives without allocation.
+    pub(super) scratch: (Vec<usize>, Vec<usize>, Vec<f64>),
+}
+
+impl<M: Model> Instance<M> {
+    /// A new instance in the state `instantiated`.
+    pub(super) fn new(interface: Interface, logger: Logger) -> Self {
+        let layout = Layout::new(M::definition());
+        let now: Snapshot<M> = Snapshot::new(interface, &layout);
+        let step_start = (now.model.clone(), now.values.clone());
+        Self { layout, logger, now, step_start, states: BTreeMap::new(), scratch: Default::default() }
+    }
+
+    /// Runs `body` as the C function `function`: the one place where call order is checked and
+    /// where errors become a status, a log line and a mode.
+    pub(super) fn call(&mut self, function: Function, body: impl FnOnce(&mut Self) -> CallResult) -> Status {
+        if self.now.mode == Mode::Fatal {
+            return Status::Fatal;
+        }
+        let result = if function.is_legal(self.now.interface, self.now.mode) {
+            body(self)
+        } else {
+            Err(CallError::refused(format!("not allowed in {}", self.state_name())))
+        };
+        let Err(error) = result else { return Status::Ok };
+        if let CallError::Failed(_) = error {
+            self.now.mode = Mode::Error;
+        }
+        self.logger.log(error.status(), error.category(), &format!("{}: {error}", function.name()));
+        error.status()
+    }
+
+    /// Marks the instance unusable after a panic in `function`.
+    pub(super) fn poison(&mut self, function: Function, message: &str) {
+        self.now.mode = Mode::Fatal;
+        let message = format!("{}: internal error, the instance cannot be used any more: {message}", function.name());
+        self.logger.log(Status::Fatal, LogCategory::StatusFatal, &message);
+    }
+
+    fn state_name(&self) -> String {
+        let interface = match self.now.interface {
+            Interface::ModelExchange => "Model Exchange",
+            Interface::CoSimulation => "Co-Simulation",
+        };
+        format!("state {:?} of {interface}", self.now.mode)
+    }
+
+    /// `fmi2SetDebugLogging`
+    pub(super) fn set_debug_logging(&mut self, on: bool, categories: &[&CStr]) -> CallResult {
+        self.logger
+            .switch(on, categories)
+            .map_err(|name| CallError::refused(format!("log category {} is not declared", name.to_string_lossy())))
+    }
+
+    /// `fmi2Reset`: as after `fmi2Instantiate`. Handed-out states and log switches stay.
+    pub(super) fn reset(&mut self) {
+        self.now = Snapshot::new(self.now.interface, &self.layout);
+    }
+
+    /// Sets the time and the independent variable.
+    pub(super) fn set_current_time(&mut self, time: f64) {
+        self.now.time = time;
+        if let Some(slot) = self.layout.time {
+            self.now.values.reals[slot] = time;
+        }
+    }
+
+    /// Computes the calculated variables if something they depend on has changed.
+    ///
+    /// After an error or a discarded step values are for debugging only and stay as they are.
+    pub(super) fn refresh(&mut self) -> CallResult {
+        if !self.now.stale || matches!(self.now.mode, Mode::Instantiated | Mode::StepFailed | Mode::Error | Mode::Fatal) {
+            return Ok(());
+        }
+        let Snapshot { model, values, time, mode, experiment, .. } = &mut self.now;
+        match (mode, experiment) {
+            // what the parameters are worth is judged on leaving the mode: until then a host may
+            // still be on its way to a consistent set
+            (Mode::Initialization, Some(experiment)) => model
+                .initialize(values, experiment, false, &mut self.logger)
+                .map_err(|error| CallError::refused(error.to_string()))?,
+            _ => model.update(values, *time)?,
+        }
+        self.check_finite()?;
+        self.now.stale = false;
+        Ok(())
+    }
+
+    /// No call succeeds with a value that is not finite.
+    pub(super) fn check_finite(&self) -> CallResult {
+        match self.now.values.reals.iter().position(|x| !x.is_finite()) {
+            None => Ok(()),
+            Some(slot) => {
+                let name = self.layout.name(&self.layout.reals.entries[slot]);
+                Err(CallError::Discard(format!("{name} is not finite")))
+            }
+        }
+    }
+}
+
+impl<M: Model> Snapshot<M> {
+    fn new(interface: Interface, layout: &Layout) -> Self {
+        Self {
+            interface,
+            mode: Mode::Instantiated,
+            time: 0.0,
+            experiment: None,
+            model: M::instantiate(),
+            values: Values::start(layout.definition),
+            stale: true,
+            discrete_states_settled: false,
+            input_derivatives: InputDerivatives::new(layout.continuous_inputs),
+        }
+    }
+
+    /// Whether a deserialized snapshot fits the definition.
+    pub fn fits(&self, interface: Interface, layout: &Layout) -> bool {
+        self.interface == interface
+            && self.mode != Mode::Fatal
+            && self.time.is_finite()
+            && self.values.reals.len() == layout.reals.entries.len()
+            && self.values.integers.len() == layout.integers.entries.len()
+            && self.values.booleans.len() == layout.booleans.entries.len()
+            && self.model.continuous_states().len() == layout.derivatives.len()
+            && self.input_derivatives.len() == layout.continuous_inputs
+            && self.input_derivatives.is_finite()
+    }
+}
