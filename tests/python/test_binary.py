@@ -1,0 +1,84 @@
+"""The shared library and its model description tell the same."""
+
+import pytest
+from conftest import ROOT
+from fmpy import fmi2
+from fmpy.fmi1 import FMICallException
+from rps3_study.fmu import Fmu, Instance, ModelInstance, Value
+
+KINDS = [Instance, ModelInstance]
+
+
+def starts(fmu: Fmu) -> dict[str, Value]:
+    """Start values of all variables that are set from outside."""
+    convert = {"Real": float, "Integer": int, "Boolean": lambda text: text in ("true", True)}
+    names = fmu.names("input") + fmu.names("parameter")
+    return {name: convert[fmu.variables[name].type](fmu.variables[name].start) for name in names}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_start_values_read_after_instantiation_equal_those_of_the_xml(fmu: Fmu, kind: type[Instance]) -> None:
+    with kind(fmu) as instance:
+        assert instance.get(starts(fmu)) == starts(fmu)
+
+
+def test_reset_restores_all_start_values(fmu: Fmu) -> None:
+    with Instance(fmu) as instance:
+        changed = {n: 1.5 * v + 0.25 for n, v in starts(fmu).items() if fmu.variables[n].type == "Real"}
+        instance.set(changed)
+        instance.slave.reset()
+        assert instance.get(starts(fmu)) == starts(fmu)
+
+
+def test_every_variable_can_be_read_after_initialization(fmu: Fmu, settings: dict[str, Value]) -> None:
+    with Instance(fmu) as instance:
+        instance.initialize(settings)
+        values = instance.get(fmu.variables)
+    assert all(value == value for value in values.values())  # none is NaN
+
+
+def test_calculated_outputs_lie_within_their_limits(fmu: Fmu, settings: dict[str, Value]) -> None:
+    with Instance(fmu) as instance:
+        instance.initialize(settings)
+        for name, value in instance.get(fmu.names("output")).items():
+            variable = fmu.variables[name]
+            assert variable.min is None or value >= float(variable.min), name
+            assert variable.max is None or value <= float(variable.max), name
+
+
+@pytest.mark.parametrize("guid", ["", "{00000000-0000-0000-0000-000000000000}"])
+def test_foreign_guid_is_refused(fmu: Fmu, guid: str) -> None:
+    slave = fmi2.FMU2Slave(
+        guid=guid,
+        unzipDirectory=str(fmu.directory),
+        modelIdentifier=fmu.description.coSimulation.modelIdentifier,
+    )
+    with pytest.raises(Exception, match="instantiate"):
+        slave.instantiate()
+
+
+def test_versions_are_those_of_fmi_2(fmu: Fmu) -> None:
+    with Instance(fmu) as instance:
+        assert instance.slave.getVersion() == "2.0"
+        assert instance.slave.getTypesPlatform() == "default"
+
+
+def test_unknown_value_reference_is_an_error_that_is_logged(fmu: Fmu) -> None:
+    with Instance(fmu) as instance:
+        with pytest.raises(FMICallException) as caught:
+            instance.slave.getReal([4_000_000_000])
+        assert caught.value.status == fmi2.fmi2Error
+        assert any(message.status == fmi2.fmi2Error for message in instance.messages)
+
+
+def test_log_names_the_instance_that_spoke(fmu: Fmu) -> None:
+    with Instance(fmu, "one") as one, Instance(fmu, "two") as two:
+        with pytest.raises(FMICallException):
+            one.slave.getReal([4_000_000_000])
+        assert {message.instance for message in one.messages} == {"one"}
+        assert two.messages == []
+
+
+def test_committed_description_is_the_packaged_one(fmu: Fmu) -> None:
+    committed = ROOT / "modelDescription" / f"{fmu.archive.stem}.xml"
+    assert committed.read_bytes() == (fmu.directory / "modelDescription.xml").read_bytes()

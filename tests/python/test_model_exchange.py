@@ -1,0 +1,64 @@
+"""Model Exchange agrees with Co-Simulation."""
+
+import numpy as np
+import pytest
+from fmpy import simulate_fmu
+from rps3_study.fmu import Fmu, Instance, ModelInstance
+
+STARTS = {"v_leg1": 3.0, "v_leg2": -2.0, "v_rev1": 4.0, "f_ext_z": -5.0}
+STATES = ["heave", "tilt_x", "tilt_y", "heave_dot", "tilt_x_dot", "tilt_y_dot", "i_leg1", "i_rev3"]
+
+
+def run(plant: Fmu, stop: float, **options: object) -> np.ndarray:
+    """FMPy's result with constant inputs."""
+    return simulate_fmu(
+        str(plant.archive),
+        stop_time=stop,
+        output_interval=1e-3,
+        start_values=STARTS,
+        output=STATES,
+        set_stop_time=False,
+        **options,
+    )
+
+
+def test_cvode_and_the_built_in_solver_agree(plant: Fmu) -> None:
+    own = run(plant, 0.1, fmi_type="CoSimulation", relative_tolerance=1e-8)
+    cvode = run(plant, 0.1, fmi_type="ModelExchange", solver="CVode", relative_tolerance=1e-8)
+    for name in STATES:
+        scale = np.abs(own[name]).max()
+        # CVode bounds the local error; some ten steps a time constant add up to a hundred times that
+        np.testing.assert_allclose(cvode[name][-1], own[name][-1], atol=1e-6 * scale, rtol=0, err_msg=name)
+
+
+def test_euler_converges_to_the_built_in_solver_with_order_one(plant: Fmu) -> None:
+    own = run(plant, 0.01, fmi_type="CoSimulation", relative_tolerance=1e-10)
+    coarse, fine = (run(plant, 0.01, fmi_type="ModelExchange", solver="Euler", step_size=step) for step in (1e-5, 5e-6))
+    for name in STATES:
+        ratio = abs(coarse[name][-1] - own[name][-1]) / abs(fine[name][-1] - own[name][-1])
+        assert ratio == pytest.approx(2.0, abs=0.1), name
+
+
+def test_controller_has_equal_outputs_at_its_time_events_and_its_co_simulation_ticks(controller: Fmu) -> None:
+    outputs, ticks = controller.names("output"), 50
+    with Instance(controller) as cs, ModelInstance(controller) as me:
+        cs.initialize({"control_mode": 2})
+        me.initialize({"control_mode": 2})
+        info = update(me)
+        for k in range(ticks):
+            cs.step(k * 1e-3, 1e-3)
+            assert me.get(outputs) == cs.get(outputs), k
+            *_, defined, event_time = info
+            assert defined and event_time == pytest.approx((k + 1) * 1e-3, abs=1e-15)
+            me.slave.enterContinuousTimeMode()
+            me.slave.setTime(event_time)
+            me.slave.enterEventMode()
+            info = update(me)
+
+
+def update(instance: ModelInstance) -> tuple:
+    """Result of fmi2NewDiscreteStates, repeated until no further update is needed."""
+    while True:
+        info = instance.slave.newDiscreteStates()
+        if not info[0]:
+            return info
