@@ -19,4 +19,7 @@ pub use jacobian::{OverallJacobian, scale_twist};
 pub use limb::{Limb, LimbMotion};
 pub use pose::{Pose, PoseMotion};
 pub use rotation::{ExponentialCoefficients, rotation_vector};
-pub use singularity::{matrix_a, normalized_det_a};
+pub use singularity::{
+    NearestSingularity, RealRoots, SingularityCubic, matrix_a, matrix_b, nearest_singularity, normalized_det_a,
+    singular_heights,
+};
