@@ -1,0 +1,59 @@
+"""Figures of merit and the report, on runs whose figures are known."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rps3_study import report
+from rps3_study.couple import Run
+from rps3_study.metrics import COORDINATES, VOLTAGES, figures
+from rps3_study.tasks import Push, Task
+
+RADIUS = 0.2
+SIGNALS = [f"plant.{n}" for n in (*COORDINATES, "p_x", "p_y", "p_z", "v_x", "v_y", "v_z", "sigma_min")] + [
+    f"controller.{n}" for n in (*VOLTAGES, *(f"{c}_ref" for c in COORDINATES), "rho", "rho_hd", "delta_hd", "lambda_f")
+]
+
+
+def made_up_run(failure: str | None = None, length: int = 5) -> Run:
+    """Half the time 1 mm too high, half the time 10 mrad too tilted (2 mm at the radius), 12 V and 1 ms saturated."""
+    values = {name: np.zeros(5) for name in SIGNALS}
+    values["time"] = 1e-3 * np.arange(5)
+    values["plant.heave"] = np.array([1e-3, 1e-3, 0.0, 0.0, 0.0])
+    values["controller.tilt_y_ref"] = np.array([0.0, 0.0, 1e-2, 1e-2, 0.0])
+    values["controller.v_rev2"] = np.array([0.0, -12.0, 3.0, 0.0, 0.0])
+    values["controller.saturated"] = np.array([0.0, 1.0, 0.0, 0.0, 0.0])
+    return Run({name: value[:length] for name, value in values.items()}, failure)
+
+
+def test_pose_error_takes_the_largest_component_and_tilts_at_the_radius() -> None:
+    result = figures(made_up_run(), RADIUS)
+    assert result.peak_error == pytest.approx(2.0)
+    assert result.rms_error == pytest.approx(np.sqrt((1 + 1 + 4 + 4 + 0) / 5))
+
+
+def test_voltage_counts_by_size_and_saturation_by_time() -> None:
+    result = figures(made_up_run(), RADIUS)
+    assert result.peak_voltage == 12.0
+    assert result.saturation_time == pytest.approx(1e-3)
+
+
+def test_push_acts_while_the_time_is_closer_to_its_center_than_half_its_width() -> None:
+    push = Push(force=-100.0, moment=5.0, center=0.5, half_width=0.02)
+    assert push(0.49) == {"f_ext_z": -100.0, "m_ext_x": 5.0}
+    assert push(0.47) == push(0.53) == {"f_ext_z": 0.0, "m_ext_x": 0.0}
+
+
+def test_report_holds_table_plots_and_data_and_is_the_same_when_written_again(tmp_path: Path) -> None:
+    runs = {"DRAC": made_up_run(), "HDRAC+MPSO": made_up_run("no | such mode", length=0)}
+    cases = [report.Case(Task("smooth", "Crossing", {}), "six motors", runs)]
+    first, second = (report.write(tmp_path / name, cases, RADIUS).parent for name in ("first", "second"))
+    files = sorted(path.name for path in first.iterdir())
+    assert {"index.html", "report.md", "smooth-six-motors-drac.csv", "smooth-six-motors-control.svg"} <= set(files)
+    for name in files:
+        assert (first / name).read_bytes() == (second / name).read_bytes(), name
+    text = (first / "report.md").read_text()
+    assert "| DRAC | 2 | 1.41 | 12 | 1 | 0.93 |  |" in text
+    assert "ended early: no \\| such mode" in text
+    data = np.genfromtxt(first / "smooth-six-motors-drac.csv", delimiter=",", names=True, deletechars="")
+    assert data["plant.heave"][0] == 1e-3
