@@ -57,8 +57,9 @@ fn render(root: &impl Serialize) -> Result<String> {
 
 impl SystemStructureDescription {
     fn new(fmus: &[(Fmu, Document)], parameter_set: &str) -> Self {
-        let components: Vec<_> =
-            fmus.iter().map(|(fmu, document)| Component::new(*fmu, document, parameter_set)).collect();
+        let all: Vec<_> = fmus.iter().map(|(fmu, document)| Component::new(*fmu, document, parameter_set)).collect();
+        let connections = connections(&all);
+        let components = all.into_iter().map(|component| component.without_open_inputs(&connections)).collect();
         let experiment = fmus.iter().find_map(|(_, document)| element(document, "DefaultExperiment"));
         let time = |name, default: &str| experiment.and_then(|node| node.attribute(name)).unwrap_or(default).to_owned();
         Self {
@@ -68,7 +69,7 @@ impl SystemStructureDescription {
             name: "Rps3",
             system: System {
                 name: "Rps3",
-                connections: Connections { connections: connections(&components) },
+                connections: Connections { connections },
                 elements: Elements { components },
             },
             units: Units { units: units(fmus) },
@@ -96,6 +97,14 @@ impl Component {
                 },
             },
         }
+    }
+
+    /// Leaves out inputs that nothing feeds: they keep their start values. FMPy 0.3.32 would connect them to
+    /// whatever feeds the input before.
+    fn without_open_inputs(mut self, connections: &[Connection]) -> Self {
+        let fed = |name: &str| connections.iter().any(|c| c.end_element == self.name && c.end_connector == name);
+        self.connectors.connectors.retain(|connector| connector.kind == "output" || fed(&connector.name));
+        self
     }
 
     fn of_kind<'a>(&'a self, kind: &'a str) -> impl Iterator<Item = &'a str> {
@@ -178,12 +187,14 @@ mod tests {
     use super::*;
     use crate::fmu::{CONTROLLER, PLANT};
 
+    /// A model with one input that bears the other's output name, an output, an input of its own and a parameter.
     fn description(input: &str, output: &str) -> String {
         format!(
             r#"<fmiModelDescription><UnitDefinitions><Unit name="V"><BaseUnit kg="1" m="2" s="-3" A="-1"/></Unit></UnitDefinitions>
             <DefaultExperiment startTime="0" stopTime="1.4"/><ModelVariables>
             <ScalarVariable name="{input}" causality="input"><Real unit="V"/></ScalarVariable>
             <ScalarVariable name="{output}" causality="output"><Real/></ScalarVariable>
+            <ScalarVariable name="load" causality="input"><Real/></ScalarVariable>
             <ScalarVariable name="gain" causality="parameter"><Real/></ScalarVariable></ModelVariables></fmiModelDescription>"#
         )
     }
@@ -203,6 +214,6 @@ mod tests {
             .collect();
         assert_eq!(connections, [["controller", "v_leg1", "plant", "v_leg1"], ["plant", "d1", "controller", "d1"]]);
         assert_eq!(ssd.descendants().filter(|node| node.has_tag_name((SSC, "Unit"))).count(), 1);
-        assert!(ssd.descendants().all(|node| node.attribute("name") != Some("gain")));
+        assert!(ssd.descendants().all(|node| !["gain", "load"].map(Some).contains(&node.attribute("name"))));
     }
 }
