@@ -78,6 +78,8 @@ pub const RHO_FIXED: f64 = 0.05;
 pub const DELTA_HD_FIXED: f64 = 0.1;
 pub const LAMBDA_F_FIXED: f64 = 5e-3;
 
+/// Time constant of the pose estimate's filter, s
+pub const FILTER_TIME: f64 = 0.05;
 /// Swarm
 pub const SWARM_SIZE: i32 = 20;
 pub const MAX_ITERATIONS: i32 = 30;
@@ -93,11 +95,9 @@ pub const REGULATING_SCALE: f64 = 1.25;
 /// Largest step of a particle, as a fraction of the search range
 pub const VELOCITY_LIMIT: f64 = 0.2;
 pub const SEED: i32 = 1;
-/// Search ranges; rho and lambda_f are searched on a logarithmic scale
-pub const RHO_MIN: f64 = 1e-4;
+/// Search ranges, from 0
 pub const RHO_MAX: f64 = 1.0;
 pub const DELTA_HD_MAX: f64 = 0.1;
-pub const LAMBDA_F_MIN: f64 = 1e-4;
 pub const LAMBDA_F_MAX: f64 = 0.3;
 /// Fitness: prediction horizon, s; weights of velocity error, s2, and acceleration, s4
 pub const HORIZON: f64 = 0.02;

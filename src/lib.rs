@@ -9,6 +9,7 @@
 #![deny(unsafe_code)]
 
 pub mod control;
+pub mod coupling;
 pub mod defaults;
 pub mod description;
 pub mod dynamics;

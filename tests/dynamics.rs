@@ -1,11 +1,11 @@
 //! Facts of the plant's dynamics: Lagrange's equations, energy, reactions.
 
-use nalgebra::{SVector, Vector3};
+use nalgebra::Vector3;
 use num_dual::Dual64;
 use proptest::prelude::*;
 use rps3::dynamics::solver::{Settings, Solver};
 use rps3::dynamics::{
-    Inputs, PlantModel, PlantParameters, PlantState, derivative, electric_power, energy, evaluate, reactions,
+    Inputs, NOMINAL, PlantModel, PlantParameters, PlantState, derivative, electric_power, energy, evaluate, reactions,
     settled_currents,
 };
 use rps3::mechanism::{Limb, Pose};
@@ -142,8 +142,7 @@ fn without_friction_and_currents_energy_is_conserved_over_a_second() {
     let mut x = PlantState::zeros();
     x.fixed_rows_mut::<3>(0).copy_from(&Vector3::from(parameters.start));
     let before = energy(&m, &x);
-    let nominal = SVector::from([0.1, 0.1, 0.1, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]);
-    let settings = Settings { tolerance: 1e-9, nominal, max_step: 0.01 };
+    let settings = Settings { tolerance: 1e-9, nominal: NOMINAL, max_step: 0.01 };
     Solver::default().integrate(|_, x| derivative(&m, x, &Inputs::zero()), &mut x, 0.0, 1.0, &settings).unwrap();
     let drift = (energy(&m, &x) - before).abs() / before.abs();
     assert!((x[0] - 0.09).abs() > 1e-3, "it did fall: {x}");

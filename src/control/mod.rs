@@ -1,2 +1,31 @@
-//! Reference, estimator, sensors, control law and swarm.
+//! The controller: reference, sensors, estimator, damped resolved acceleration, actuation, swarm.
+//!
+//! At each tick the [`Controller`] estimates the state, forms the [`Situation`] (everything that
+//! does not depend on the damping), chooses the [`Damping`] by its mode, resolves the acceleration
+//! (4.14) and turns it into motor voltages.
 #![forbid(unsafe_code)]
+
+mod actuation;
+mod controller;
+mod damping;
+mod estimator;
+mod fitness;
+pub mod mpso;
+mod parameters;
+mod reference;
+mod sensors;
+mod singular;
+mod situation;
+mod stability;
+
+pub use actuation::{ForceDistribution, VoltageCommand};
+pub use controller::{Controller, Diagnostics};
+pub use damping::{Damping, Mode};
+pub use estimator::{Estimate, Estimator};
+pub use fitness::Fitness;
+pub use parameters::{ControlError, ControllerParameters, Gains, SwarmParameters, Tuning};
+pub use reference::{ExternalReference, Profile, Reference, ReferencePoint};
+pub use sensors::{Measurement, SensorParameters, Sensors};
+pub use singular::SingularBasis;
+pub use situation::Situation;
+pub use stability::{lyapunov, lyapunov_rate};

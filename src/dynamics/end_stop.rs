@@ -74,8 +74,7 @@ pub struct EndStops<T> {
 
 impl<T: Scalar> EndStops<T> {
     pub(super) fn new(parameters: &PlantParameters<T>) -> Self {
-        let lever =
-            Geometry::new(parameters.mechanism.base_radius, parameters.mechanism.joint_spacing).joint_radius;
+        let lever = Geometry::new(parameters.mechanism.base_radius, parameters.mechanism.joint_spacing).joint_radius;
         let stop = |min, max, lever: T| EndStop {
             min,
             max,

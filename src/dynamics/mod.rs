@@ -18,8 +18,10 @@ mod state;
 pub use bodies::{Bodies, MechanismDynamics};
 pub use end_stop::{EndStop, EndStops};
 pub use energy::{electric_power, energy};
-pub use forward::{Evaluation, derivative, evaluate, settled_currents, static_load};
+pub use forward::{
+    Evaluation, current_maps, derivative, evaluate, settled_currents, solve_positive_definite, static_load,
+};
 pub use motor::{Drive, Motors};
 pub use parameters::{MechanismParameters, ParameterError, PlantParameters};
 pub use reaction::{Reactions, reactions};
-pub use state::{Inputs, PlantModel, PlantState, STATES};
+pub use state::{Inputs, NOMINAL, PlantModel, PlantState, STATES};

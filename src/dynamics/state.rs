@@ -9,6 +9,9 @@ use crate::scalar::Scalar;
 /// Number of continuous states.
 pub const STATES: usize = 12;
 
+/// Nominal magnitudes of the states.
+pub const NOMINAL: [f64; STATES] = [0.1, 0.1, 0.1, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0];
+
 /// Heave, tilt_x, tilt_y (m, rad); their rates; currents of the leg motors and of the revolute
 /// motors (A).
 pub type PlantState<T> = SVector<T, STATES>;

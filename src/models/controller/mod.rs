@@ -1,5 +1,340 @@
-//! Rps3Controller.
+//! Rps3Controller: the sampled controller behind the FMI layer.
 
 pub mod table;
 
-pub struct Controller;
+use std::collections::HashMap;
+use std::sync::OnceLock;
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+use super::{descriptions, slots};
+use crate::control::mpso::{Selection, Settings};
+use crate::control::{
+    Controller as Core, ControllerParameters, Damping, Diagnostics, Gains, Measurement, Mode, Profile, ReferencePoint,
+    SensorParameters, SwarmParameters, Tuning,
+};
+use crate::description::Definition;
+use crate::dynamics::MechanismParameters;
+use crate::fmi2::{EventUpdate, Experiment, Log, Model, ModelError, ModelResult, StepInputs, Values};
+
+/// The controller and its clock.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Controller {
+    /// `None` until the first initialization.
+    core: Option<Core>,
+    start_time: f64,
+    sample_time: f64,
+    /// Number of the next tick; it is due at start_time + tick x sample_time.
+    tick: u64,
+}
+
+/// A tick this fraction of the sample time ahead is due: masters add up step sizes, and their
+/// times drift by rounding.
+const DUE: f64 = 1e-6;
+
+/// Slots of the variables that the glue touches.
+struct Slots {
+    /// First of d1..3, d1_dot..3, theta, theta_dot, i_leg, i_rev, a_x..z, ref_*.
+    inputs: usize,
+    /// First of the Real outputs.
+    outputs: usize,
+    iterations: usize,
+    saturated: usize,
+    in_singular_region: usize,
+    revolute_motors: usize,
+    reals: HashMap<String, usize>,
+    integers: HashMap<&'static str, usize>,
+    tuning: TuningSlots,
+}
+
+/// Slots of what may change at run time.
+struct TuningSlots {
+    mode: usize,
+    k_p: usize,
+    k_d: usize,
+    k_a: usize,
+    rho_fixed: usize,
+    delta_hd_fixed: usize,
+    lambda_f_fixed: usize,
+    horizon: usize,
+    weight_velocity: usize,
+    weight_acceleration: usize,
+}
+
+const INTEGERS: [&str; 7] =
+    ["computation_delay", "swarm_size", "max_iterations", "stall_iterations", "seed", "reference_mode", "profile"];
+
+fn table() -> &'static (Definition, Slots) {
+    static TABLE: OnceLock<(Definition, Slots)> = OnceLock::new();
+    TABLE.get_or_init(|| {
+        let definition = table::definition();
+        let real = |name: &str| slots::real(&definition, name);
+        let tuning = TuningSlots {
+            mode: slots::integer(&definition, "control_mode"),
+            k_p: real("k_p"),
+            k_d: real("k_d"),
+            k_a: real("k_a"),
+            rho_fixed: real("rho_fixed"),
+            delta_hd_fixed: real("delta_hd_fixed"),
+            lambda_f_fixed: real("lambda_f_fixed"),
+            horizon: real("horizon"),
+            weight_velocity: real("weight_velocity"),
+            weight_acceleration: real("weight_acceleration"),
+        };
+        let slots = Slots {
+            inputs: real("d1"),
+            outputs: real("v_leg1"),
+            iterations: slots::integer(&definition, "mpso_iterations"),
+            saturated: slots::boolean(&definition, "saturated"),
+            in_singular_region: slots::boolean(&definition, "in_singular_region"),
+            revolute_motors: slots::boolean(&definition, "revolute_motors"),
+            reals: slots::real_parameters(&definition),
+            integers: INTEGERS.map(|name| (name, slots::integer(&definition, name))).into(),
+            tuning,
+        };
+        (definition, slots)
+    })
+}
+
+/// Parameters that hold for the whole run.
+fn parameters(values: &Values) -> ControllerParameters {
+    let slots = &table().1;
+    let real = |name: &str| values.reals[slots.reals[name]];
+    let integer = |name: &str| values.integers[slots.integers[name]];
+    // the table's range keeps counts positive
+    let count = |name: &str| usize::try_from(integer(name)).unwrap_or(0);
+    let waypoint = |point: &str| ["heave", "tilt_x", "tilt_y"].map(|name| real(&format!("{point}_{name}")));
+    ControllerParameters {
+        mechanism: MechanismParameters::by_name(real, values.booleans[slots.revolute_motors]),
+        sample_time: real("sample_time"),
+        computation_delay: integer("computation_delay") == 1,
+        waypoints: ["start", "via", "end"].map(waypoint),
+        move_time: real("move_time"),
+        profile: if integer("profile") == 1 { Profile::ConstantSpeed } else { Profile::Quintic },
+        external_reference: integer("reference_mode") == 2,
+        sensors: SensorParameters {
+            scale: real("sensor_scale"),
+            length_resolution: real("sensor_length_resolution"),
+            angle_resolution: real("sensor_angle_resolution"),
+            length_noise: real("sensor_length_noise"),
+            angle_noise: real("sensor_angle_noise"),
+            length_bias: real("sensor_length_bias"),
+        },
+        filter_time: real("filter_time"),
+        swarm: SwarmParameters {
+            settings: Settings {
+                swarm_size: count("swarm_size"),
+                max_iterations: count("max_iterations"),
+                stall_iterations: count("stall_iterations"),
+                c1: real("c1"),
+                c2: real("c2"),
+                inertia_max: real("inertia_max"),
+                inertia_min: real("inertia_min"),
+                decay_max: real("decay_max"),
+                decay_min: real("decay_min"),
+                regulating_scale: real("regulating_scale"),
+                velocity_limit: real("velocity_limit"),
+                selection: Selection::Ranked,
+            },
+            largest: Damping { rho: real("rho_max"), delta_hd: real("delta_hd_max"), lambda_f: real("lambda_f_max") },
+        },
+        seed: u64::try_from(integer("seed")).unwrap_or(0),
+    }
+}
+
+/// What may change between ticks.
+fn tuning(values: &Values) -> Tuning {
+    let slots = &table().1.tuning;
+    let real = |slot: usize| values.reals[slot];
+    Tuning {
+        mode: match values.integers[slots.mode] {
+            1 => Mode::Rac,
+            2 => Mode::Drac,
+            3 => Mode::Hdrac,
+            _ => Mode::HdracMpso,
+        },
+        gains: Gains { position: real(slots.k_p), velocity: real(slots.k_d), acceleration: real(slots.k_a) },
+        fixed: Damping {
+            rho: real(slots.rho_fixed),
+            delta_hd: real(slots.delta_hd_fixed),
+            lambda_f: real(slots.lambda_f_fixed),
+        },
+        horizon: real(slots.horizon),
+        weight_velocity: real(slots.weight_velocity),
+        weight_acceleration: real(slots.weight_acceleration),
+    }
+}
+
+/// Measurements and external reference by a function from the place among the inputs.
+fn inputs_from(at: impl Fn(usize) -> f64) -> (Measurement<f64>, ReferencePoint<f64>) {
+    let vector = |k: usize| Vector3::new(at(3 * k), at(3 * k + 1), at(3 * k + 2));
+    let measurement = Measurement {
+        lengths: vector(0),
+        length_rates: vector(1),
+        angles: vector(2),
+        angle_rates: vector(3),
+        leg_currents: vector(4),
+        revolute_currents: vector(5),
+        acceleration: vector(6),
+    };
+    (measurement, ReferencePoint { position: vector(7), rate: vector(8), acceleration: vector(9) })
+}
+
+fn write(values: &mut Values, d: &Diagnostics) {
+    let slots = &table().1;
+    let v = &d.voltages;
+    let (e, r) = (&d.estimate, &d.reference);
+    let outputs = [
+        v[0],
+        v[1],
+        v[2],
+        v[3],
+        v[4],
+        v[5],
+        d.damping.rho,
+        d.rho_hd,
+        d.damping.delta_hd,
+        d.damping.lambda_f,
+        d.sigma_min,
+        d.lyapunov,
+        d.lyapunov_rate,
+        e.x,
+        e.y,
+        e.z,
+        r.x,
+        r.y,
+        r.z,
+        d.position_error,
+        d.rotation_error,
+        d.fitness,
+    ];
+    values.reals[slots.outputs..slots.outputs + outputs.len()].copy_from_slice(&outputs);
+    values.integers[slots.iterations] = i32::try_from(d.iterations).unwrap_or(i32::MAX);
+    values.booleans[slots.saturated] = d.saturated;
+    values.booleans[slots.in_singular_region] = d.sigma_min < d.damping.delta_hd;
+}
+
+impl Controller {
+    /// When the next tick is due, s: computed from an integer, so that it does not drift.
+    fn due(&self) -> f64 {
+        self.start_time + self.tick as f64 * self.sample_time
+    }
+
+    /// Makes the due tick with the inputs that `at` tells.
+    fn make_tick(&mut self, values: &mut Values, at: impl Fn(usize) -> f64) -> ModelResult {
+        let first = table().1.inputs;
+        let (measured, external) = inputs_from(|k| at(first + k));
+        let core = self.core.as_mut().ok_or_else(|| ModelError::Error("not initialized".into()))?;
+        let t = self.tick as f64 * self.sample_time;
+        let diagnostics = core
+            .tick(t, &measured, &external, &tuning(values), true)
+            .map_err(|error| ModelError::Discard(error.to_string()))?;
+        write(values, &diagnostics);
+        self.tick += 1;
+        Ok(())
+    }
+}
+
+impl Model for Controller {
+    fn definition() -> &'static Definition {
+        &table().0
+    }
+
+    fn guid() -> &'static str {
+        descriptions::CONTROLLER.guid
+    }
+
+    fn instantiate() -> Self {
+        Self { core: None, start_time: 0.0, sample_time: crate::defaults::SAMPLE_TIME, tick: 0 }
+    }
+
+    fn initialize(
+        &mut self,
+        values: &mut Values,
+        experiment: &Experiment,
+        _last: bool,
+        _log: &mut dyn Log,
+    ) -> ModelResult {
+        let parameters = parameters(values);
+        let refuse = |error: crate::control::ControlError| ModelError::Error(error.to_string());
+        let mut core = Core::new(parameters).map_err(refuse)?;
+        // Outputs during initialization are those of the first tick, made on a copy: the tick itself
+        // belongs to the first step or event, and must not find used random numbers.
+        let first = table().1.inputs;
+        let (measured, external) = inputs_from(|k| values.reals[first + k]);
+        let mut preview = core.clone();
+        let diagnostics = preview.tick(0.0, &measured, &external, &tuning(values), false).map_err(refuse)?;
+        core.assume_voltages(&diagnostics.voltages);
+        write(values, &diagnostics);
+        self.core = Some(core);
+        self.start_time = experiment.start_time;
+        self.sample_time = parameters.sample_time;
+        self.tick = 0;
+        Ok(())
+    }
+
+    fn update(&mut self, _values: &mut Values, _time: f64) -> ModelResult {
+        // outputs change at ticks only
+        Ok(())
+    }
+
+    fn step(
+        &mut self,
+        values: &mut Values,
+        inputs: &dyn StepInputs,
+        from: f64,
+        to: f64,
+        _log: &mut dyn Log,
+    ) -> ModelResult {
+        // A tick at `to` belongs to the next step: the master has yet to set the inputs for it.
+        while self.due() < to - DUE * self.sample_time {
+            let t = self.due().max(from);
+            self.make_tick(values, |slot| inputs.at(slot, t))?;
+        }
+        Ok(())
+    }
+
+    fn continuous_states(&self) -> &[f64] {
+        &[]
+    }
+
+    fn continuous_states_mut(&mut self) -> &mut [f64] {
+        &mut []
+    }
+
+    fn nominals(&self, _nominals: &mut [f64]) {}
+
+    fn new_discrete_states(&mut self, values: &mut Values, time: f64, _log: &mut dyn Log) -> ModelResult<EventUpdate> {
+        while self.due() <= time + DUE * self.sample_time {
+            let inputs = values.reals.clone();
+            self.make_tick(values, |slot| inputs[slot])?;
+        }
+        Ok(EventUpdate { states_changed: false, next_event_time: Some(self.due()) })
+    }
+
+    fn directional_derivative(
+        &mut self,
+        _values: &Values,
+        _time: f64,
+        _initialization: bool,
+        _unknowns: &[usize],
+        _knowns: &[usize],
+        _seed: &[f64],
+        result: &mut [f64],
+    ) -> ModelResult {
+        // between ticks the outputs are held
+        result.fill(0.0);
+        Ok(())
+    }
+
+    fn output_derivative(
+        &mut self,
+        _values: &Values,
+        _time: f64,
+        _slot: usize,
+        _input_rates: &dyn Fn(usize) -> f64,
+    ) -> ModelResult<f64> {
+        Ok(0.0)
+    }
+}

@@ -2,9 +2,7 @@
 
 use crate::defaults as d;
 use crate::description::{Capabilities, Causality, DefaultExperiment, Definition, Unknown, Variable};
-use crate::models::common_table::{
-    COORDINATE_UNITS, POSITIVE, RATE_UNITS, coordinates, mechanism_parameters, names, per_limb,
-};
+use crate::models::common_table::{COORDINATE_UNITS, RATE_UNITS, coordinates, mechanism_parameters, names, per_limb};
 
 const INF: f64 = f64::INFINITY;
 
@@ -173,12 +171,9 @@ fn reals() -> Vec<Variable> {
             .nominal(0.01),
         real(2013, "regulating_scale", None, d::REGULATING_SCALE, 0.0, INF, "Regulating scale R (3.5)"),
         real(2014, "velocity_limit", None, d::VELOCITY_LIMIT, 0.0, 1.0, "Largest step of a particle by search range"),
-        real(2015, "rho_min", None, d::RHO_MIN, POSITIVE, INF, "Search range of rho: smallest above 0").nominal(1e-4),
-        real(2016, "rho_max", None, d::RHO_MAX, POSITIVE, INF, "Search range of rho: largest"),
-        real(2017, "delta_hd_max", None, d::DELTA_HD_MAX, 0.0, INF, "Search range of delta_hd: largest").nominal(0.1),
-        real(2018, "lambda_f_min", None, d::LAMBDA_F_MIN, POSITIVE, INF, "Search range of lambda_f: smallest above 0")
-            .nominal(1e-4),
-        real(2019, "lambda_f_max", None, d::LAMBDA_F_MAX, POSITIVE, INF, "Search range of lambda_f: largest"),
+        real(2015, "rho_max", None, d::RHO_MAX, 0.0, INF, "Search range of rho: largest"),
+        real(2016, "delta_hd_max", None, d::DELTA_HD_MAX, 0.0, INF, "Search range of delta_hd: largest").nominal(0.1),
+        real(2017, "lambda_f_max", None, d::LAMBDA_F_MAX, 0.0, INF, "Search range of lambda_f: largest"),
         tunable(2020, "horizon", Some("s"), d::HORIZON, 1e-6, INF, "Prediction horizon of the fitness")
             .display("ms")
             .nominal(0.01),
@@ -202,6 +197,17 @@ fn reals() -> Vec<Variable> {
             "Fitness: weight of the acceleration",
         )
         .nominal(1e-8),
+        real(
+            2024,
+            "filter_time",
+            Some("s"),
+            d::FILTER_TIME,
+            0.0,
+            INF,
+            "Time constant of the pose estimate's filter; 0: none",
+        )
+        .display("ms")
+        .nominal(0.01),
         real(2023, "move_time", Some("s"), d::MOVE_TIME, 1e-3, INF, "Duration of the motion from start to end"),
     ];
     let waypoints = [
@@ -325,7 +331,6 @@ fn dependencies(name: &str, knowns: &[String]) -> Vec<String> {
             || ["reference_mode", "profile", "move_time", "computation_delay", "sample_time"].contains(&known)
     };
     if name.ends_with("_ref") {
-        // The reference's accelerations and rates matter for its value only when it is predicted.
         return knowns.iter().filter(|known| reference(known)).cloned().collect();
     }
     knowns.to_vec()

@@ -14,7 +14,7 @@ use self::outputs::{CALCULATED, Calculated, calculate};
 use super::{descriptions, slots};
 use crate::description::Definition;
 use crate::dynamics::solver::{Settings, Solver};
-use crate::dynamics::{Inputs, PlantModel, PlantParameters, PlantState, STATES, derivative, settled_currents};
+use crate::dynamics::{Inputs, NOMINAL, PlantModel, PlantParameters, PlantState, STATES, derivative, settled_currents};
 use crate::fmi2::{EventUpdate, Experiment, Log, Model, ModelError, ModelResult, StepInputs, Values};
 use crate::mechanism::{Limb, Pose};
 use crate::scalar::Scalar;
@@ -86,9 +86,6 @@ fn table() -> &'static (Definition, Slots) {
         (definition, slots)
     })
 }
-
-/// Nominal values of the states, also the solver's absolute scale.
-const NOMINAL: [f64; STATES] = [0.1, 0.1, 0.1, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0];
 
 /// Local errors add up along a run: the solver works this much below the tolerance asked for, so
 /// that the results keep it.
@@ -246,11 +243,8 @@ impl Model for Plant {
         to: f64,
         _log: &mut dyn Log,
     ) -> ModelResult {
-        let settings = Settings {
-            tolerance: self.tolerance * TOLERANCE_MARGIN,
-            nominal: NOMINAL.into(),
-            max_step: self.max_step,
-        };
+        let settings =
+            Settings { tolerance: self.tolerance * TOLERANCE_MARGIN, nominal: NOMINAL, max_step: self.max_step };
         let model = &self.model;
         let outcome = if step_inputs.constant() {
             let u = inputs(values);
@@ -281,12 +275,7 @@ impl Model for Plant {
         nominals.copy_from_slice(&NOMINAL);
     }
 
-    fn new_discrete_states(
-        &mut self,
-        values: &mut Values,
-        _time: f64,
-        _log: &mut dyn Log,
-    ) -> ModelResult<EventUpdate> {
+    fn new_discrete_states(&mut self, values: &mut Values, _time: f64, _log: &mut dyn Log) -> ModelResult<EventUpdate> {
         self.write(values);
         Ok(EventUpdate::default())
     }
@@ -302,9 +291,8 @@ impl Model for Plant {
         result: &mut [f64],
     ) -> ModelResult {
         let slots = &table().1;
-        let direction = |slot: usize| -> f64 {
-            knowns.iter().zip(seed).filter(|(known, _)| **known == slot).map(|(_, s)| s).sum()
-        };
+        let direction =
+            |slot: usize| -> f64 { knowns.iter().zip(seed).filter(|(known, _)| **known == slot).map(|(_, s)| s).sum() };
         let dual = |slot: usize| Dual64::new(values.reals[slot], direction(slot));
         let u = inputs_from(|k| dual(slots.inputs + k));
         let calculated = if initialization {

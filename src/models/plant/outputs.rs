@@ -32,9 +32,7 @@ impl SingularValues for Dual64 {
         let svd = matrix.map(|x| x.re).svd_unordered(true, true);
         let smallest = svd.singular_values.imin();
         let derivative = match (svd.u, svd.v_t) {
-            (Some(u), Some(v_t)) => {
-                u.column(smallest).dot(&(matrix.map(|x| x.eps) * v_t.row(smallest).transpose()))
-            }
+            (Some(u), Some(v_t)) => u.column(smallest).dot(&(matrix.map(|x| x.eps) * v_t.row(smallest).transpose())),
             _ => f64::NAN,
         };
         Dual64::new(svd.singular_values[smallest], derivative)

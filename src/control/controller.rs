@@ -1,0 +1,307 @@
+//! The sampled controller: one tick from measurement to voltages.
+
+use nalgebra::{Vector3, Vector6};
+use rand::SeedableRng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+use serde::{Deserialize, Serialize};
+
+use super::actuation::voltages;
+use super::mpso::{Bounds, Swarm};
+use super::parameters::Tuning;
+use super::{
+    ControlError, ControllerParameters, Damping, Estimate, Estimator, ExternalReference, Fitness, ForceDistribution,
+    Measurement, Mode, Reference, ReferencePoint, Sensors, SingularBasis, Situation, VoltageCommand, lyapunov,
+    lyapunov_rate,
+};
+use crate::dynamics::solver::{Settings, Solver};
+use crate::dynamics::{Inputs, NOMINAL, PlantModel, PlantState, STATES, derivative};
+use crate::mechanism::{Pose, rotation_vector};
+
+/// The controller between ticks.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(try_from = "Saved", into = "Saved")]
+pub struct Controller {
+    parameters: ControllerParameters,
+    /// Derived from `parameters`.
+    model: PlantModel<f64>,
+    reference: Reference<f64>,
+    swarm: Search,
+    /// What changes from tick to tick.
+    memory: Memory,
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct Memory {
+    estimator: Estimator,
+    sensors: Sensors,
+    rng: Xoshiro256PlusPlus,
+    /// The last optimum, from which the next search starts.
+    particle: Option<[f64; 3]>,
+    /// Voltages in force, V.
+    voltages: [f64; 6],
+}
+
+#[derive(Serialize, Deserialize)]
+struct Saved {
+    parameters: ControllerParameters,
+    memory: Memory,
+}
+
+impl TryFrom<Saved> for Controller {
+    type Error = ControlError;
+
+    fn try_from(saved: Saved) -> Result<Self, ControlError> {
+        let mut controller = Self::new(saved.parameters)?;
+        controller.memory = saved.memory;
+        Ok(controller)
+    }
+}
+
+impl From<Controller> for Saved {
+    fn from(controller: Controller) -> Self {
+        Self { parameters: controller.parameters, memory: controller.memory }
+    }
+}
+
+/// The swarm's dimension depends on the motors: three motors have a force distribution to damp.
+#[derive(Debug, Clone)]
+enum Search {
+    Two(Swarm<2>),
+    Three(Swarm<3>),
+}
+
+/// What a tick leaves for the outputs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Diagnostics {
+    /// Voltages for leg and revolute motors, V.
+    pub voltages: Vector6<f64>,
+    /// A voltage is at its limit.
+    pub saturated: bool,
+    /// Damping in force.
+    pub damping: Damping<f64>,
+    /// rho_hd in force, 1/s.
+    pub rho_hd: f64,
+    /// Smallest singular value of J at the estimated pose.
+    pub sigma_min: f64,
+    /// L (5.2), m2/s2, and its rate, m2/s3.
+    pub lyapunov: f64,
+    pub lyapunov_rate: f64,
+    /// Estimated coordinates, m, rad, rad.
+    pub estimate: Vector3<f64>,
+    /// Reference coordinates, m, rad, rad.
+    pub reference: Vector3<f64>,
+    /// Distance of P from its reference, m.
+    pub position_error: f64,
+    /// Angle between platform and its reference, rad.
+    pub rotation_error: f64,
+    /// Best fitness of the swarm, m2, and its iterations; 0 in modes without swarm.
+    pub fitness: f64,
+    pub iterations: usize,
+}
+
+/// rho and lambda_f are searched as the largest times z^EXPONENT, z in [0, 1]: nearly logarithmic
+/// where it matters, and zero is within reach.
+const EXPONENT: i32 = 8;
+
+/// The prediction over a delay of one sample; the state is known less well than this.
+const PREDICTION: Settings<STATES> = Settings { tolerance: 1e-7, nominal: NOMINAL, max_step: f64::INFINITY };
+
+impl Controller {
+    /// A controller before its first tick.
+    ///
+    /// # Errors
+    /// Parameters that make no sense.
+    pub fn new(parameters: ControllerParameters) -> Result<Self, ControlError> {
+        parameters.validate()?;
+        let model = PlantModel::without_stops(&parameters.mechanism);
+        let waypoints = parameters.waypoints.map(Vector3::from);
+        let reference =
+            Reference::new(waypoints, parameters.move_time, parameters.profile, model.geometry.joint_radius);
+        let settings = parameters.swarm.settings;
+        let swarm = if parameters.mechanism.revolute_motors {
+            Search::Two(Swarm::new(Bounds::new([0.0; 2], [1.0; 2])?, settings)?)
+        } else {
+            Search::Three(Swarm::new(Bounds::new([0.0; 3], [1.0; 3])?, settings)?)
+        };
+        let rng = Xoshiro256PlusPlus::seed_from_u64(parameters.seed);
+        let mut sensor_rng = rng.clone();
+        // a stream of its own, so that the swarm's luck does not depend on the sensors
+        sensor_rng.jump();
+        let memory = Memory {
+            estimator: Estimator::new(
+                parameters.sensors.deviations(),
+                parameters.filter_time,
+                parameters.sample_time,
+                parameters.waypoints[0],
+            ),
+            sensors: Sensors::new(parameters.sensors, sensor_rng),
+            rng,
+            particle: None,
+            voltages: [0.0; 6],
+        };
+        Ok(Self { parameters, model, reference, swarm, memory })
+    }
+
+    /// Parameters in force.
+    pub fn parameters(&self) -> &ControllerParameters {
+        &self.parameters
+    }
+
+    /// Takes `voltages` (V) as those in force until the first tick's reach the motors.
+    pub fn assume_voltages(&mut self, voltages: &Vector6<f64>) {
+        self.memory.voltages = (*voltages).into();
+    }
+
+    /// The reference `t` s after the start; `external` where it comes from outside, given `ahead` s before `t`.
+    fn reference_at(&self, external: &ReferencePoint<f64>, t: f64, ahead: f64) -> ReferencePoint<f64> {
+        if self.parameters.external_reference {
+            ExternalReference(*external).ahead(ahead)
+        } else {
+            self.reference.at(t)
+        }
+    }
+
+    /// One tick, `t` s after the start.
+    ///
+    /// With a computation delay the voltages are meant for one sample later, when the state will
+    /// be what the model predicts; `delayed` false suspends that, for the very first voltages.
+    ///
+    /// # Errors
+    /// Measurements that fit no pose; a result that is not finite. The controller is then in an
+    /// undefined state between two ticks: restore an earlier one.
+    pub fn tick(
+        &mut self,
+        t: f64,
+        measured: &Measurement<f64>,
+        external: &ReferencePoint<f64>,
+        tuning: &Tuning,
+        delayed: bool,
+    ) -> Result<Diagnostics, ControlError> {
+        let measured = self.memory.sensors.read(measured);
+        let estimate = self.memory.estimator.update(&self.model.geometry, &measured);
+        if !(estimate.s.amax() < LARGEST_POSE && estimate.s_dot.amax().is_finite()) {
+            let (lengths, angles) = (measured.lengths.into(), measured.angles.into());
+            return Err(ControlError::NoPose { lengths, angles });
+        }
+        let currents = stack(&measured.leg_currents, &measured.revolute_currents);
+        let (ahead, acting, currents) = if self.parameters.computation_delay && delayed {
+            let (acting, currents) = self.predict(&estimate, &currents)?;
+            (self.parameters.sample_time, acting, currents)
+        } else {
+            (0.0, estimate, currents)
+        };
+        let reference = self.reference_at(external, t + ahead, ahead);
+        let situation = Situation::new(&self.model, &acting, &reference, &measured, &tuning.gains);
+        let basis = SingularBasis::new(&situation);
+        let distribution = ForceDistribution::new(&self.model, &situation);
+        let sample_time = self.parameters.sample_time;
+        let (damping, fitness, iterations) = match tuning.mode {
+            Mode::Rac => (Damping { rho: 0.0, delta_hd: 0.0, lambda_f: 0.0 }, 0.0, 0),
+            Mode::Drac => (Damping { delta_hd: 0.0, ..tuning.fixed }, 0.0, 0),
+            Mode::Hdrac => (tuning.fixed, 0.0, 0),
+            Mode::HdracMpso => {
+                let horizon = ahead + tuning.horizon;
+                let target = self.reference_at(external, t + horizon, horizon);
+                let fitness =
+                    Fitness::new(&self.model, &situation, &basis, &distribution, &target, tuning, sample_time);
+                self.search(&fitness, tuning)
+            }
+        };
+        let rho_hd = damping.rho_hd(basis.sigma_min, sample_time);
+        let acceleration = basis.coordinate_acceleration(damping.rho, rho_hd);
+        let force = situation.generalized_force(&acceleration);
+        let wanted = distribution.currents(&force, damping.lambda_f);
+        let VoltageCommand { voltages, saturated } =
+            voltages(&self.model.motors, &situation, &wanted, &currents, sample_time);
+        if !voltages.iter().all(|v| v.is_finite()) {
+            return Err(ControlError::NotFinite);
+        }
+        self.memory.voltages = voltages.into();
+        let now = self.reference_at(external, t, 0.0);
+        let (position_error, rotation_error) = self.pose_errors(&estimate.s, &now.position);
+        Ok(Diagnostics {
+            voltages,
+            saturated,
+            damping,
+            rho_hd,
+            sigma_min: basis.sigma_min,
+            lyapunov: lyapunov(&situation, &tuning.gains, damping.rho),
+            lyapunov_rate: lyapunov_rate(&situation, &tuning.gains, damping.rho, rho_hd),
+            estimate: estimate.s,
+            reference: now.position,
+            position_error,
+            rotation_error,
+            fitness,
+            iterations,
+        })
+    }
+
+    /// State and currents one sample ahead under the voltages in force.
+    fn predict(
+        &self,
+        estimate: &Estimate<f64>,
+        currents: &Vector6<f64>,
+    ) -> Result<(Estimate<f64>, Vector6<f64>), ControlError> {
+        let mut x = PlantState::zeros();
+        x.fixed_rows_mut::<3>(0).copy_from(&estimate.s);
+        x.fixed_rows_mut::<3>(3).copy_from(&estimate.s_dot);
+        x.fixed_rows_mut::<6>(6).copy_from(currents);
+        let v = self.memory.voltages;
+        let inputs =
+            Inputs { v_leg: Vector3::new(v[0], v[1], v[2]), v_rev: Vector3::new(v[3], v[4], v[5]), ..Inputs::zero() };
+        Solver::default()
+            .integrate(
+                |_, x| derivative(&self.model, x, &inputs),
+                &mut x,
+                0.0,
+                self.parameters.sample_time,
+                &PREDICTION,
+            )
+            .map_err(|_| ControlError::NotFinite)?;
+        let predicted = Estimate { s: x.fixed_rows::<3>(0).into(), s_dot: x.fixed_rows::<3>(3).into() };
+        Ok((predicted, x.fixed_rows::<6>(6).into()))
+    }
+
+    /// The swarm's optimum: damping, fitness, iterations.
+    fn search(&mut self, fitness: &Fitness, tuning: &Tuning) -> (Damping<f64>, f64, usize) {
+        let Memory { rng, particle, .. } = &mut self.memory;
+        let largest = self.parameters.swarm.largest;
+        let damping = |z: [f64; 3]| Damping {
+            rho: largest.rho * z[0].powi(EXPONENT),
+            delta_hd: largest.delta_hd * z[1],
+            lambda_f: largest.lambda_f * z[2].powi(EXPONENT),
+        };
+        let warm_start = *particle;
+        let (position, value, iterations) = match &mut self.swarm {
+            Search::Two(swarm) => {
+                // six motors do not damp their force distribution
+                let objective = |z: &[f64; 2]| fitness.evaluate(&damping([z[0], z[1], 0.0]));
+                let solution = swarm.minimize(rng, warm_start.map(|z| [z[0], z[1]]), objective);
+                ([solution.position[0], solution.position[1], 0.0], solution.value, solution.iterations)
+            }
+            Search::Three(swarm) => {
+                let solution = swarm.minimize(rng, warm_start, |z| fitness.evaluate(&damping(*z)));
+                (solution.position, solution.value, solution.iterations)
+            }
+        };
+        if !value.is_finite() {
+            return (tuning.fixed, value, iterations);
+        }
+        *particle = Some(position);
+        (damping(position), value, iterations)
+    }
+
+    /// Distance of P (m) and angle (rad) between two poses.
+    fn pose_errors(&self, s: &Vector3<f64>, reference: &Vector3<f64>) -> (f64, f64) {
+        let (pose, target) = (Pose::new(&self.model.geometry, s), Pose::new(&self.model.geometry, reference));
+        let rotation = target.rotation * pose.rotation.transpose();
+        ((target.position - pose.position).norm(), rotation_vector(&rotation).norm())
+    }
+}
+
+/// No mechanism of sensible size is as high, in m, or tilts as far, in rad, as this times its base.
+const LARGEST_POSE: f64 = 1e3;
+
+fn stack(leg: &Vector3<f64>, revolute: &Vector3<f64>) -> Vector6<f64> {
+    Vector6::new(leg.x, leg.y, leg.z, revolute.x, revolute.y, revolute.z)
+}

@@ -1,0 +1,60 @@
+//! Damping factors and the damped acceleration in matrix form.
+
+use nalgebra::{Matrix6, Vector6};
+use serde::{Deserialize, Serialize};
+
+use crate::scalar::{Scalar, constant};
+
+/// Control modes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Mode {
+    /// Resolved acceleration, undamped (4.5).
+    Rac,
+    /// Damped acceleration: rho fixed, rho_hd = 0.
+    Drac,
+    /// Hybrid: damped acceleration and velocity with fixed factors (4.14)-(4.16).
+    Hdrac,
+    /// Hybrid, the factors found by the modified particle swarm.
+    HdracMpso,
+}
+
+/// Damping factors.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Damping<T> {
+    /// rho (4.11), dimensionless.
+    pub rho: T,
+    /// Width delta_hd of the deceleration region (4.16), dimensionless.
+    pub delta_hd: T,
+    /// Damping of the force distribution of three motors, dimensionless.
+    pub lambda_f: T,
+}
+
+/// Keeps 1 / (sigma^2 + rho^2) finite at an exact singularity without damping; far below what
+/// rounding leaves of sigma^2 anywhere else.
+pub const SMALLEST_SQUARE: f64 = 1e-18;
+
+impl<T: Scalar> Damping<T> {
+    /// rho_hd (4.16), 1/s, at the smallest singular value `sigma_min`.
+    #[inline]
+    pub fn rho_hd(&self, sigma_min: T, sample_time: T) -> T {
+        if sigma_min < self.delta_hd { (T::one() - sigma_min / self.delta_hd) / sample_time } else { T::zero() }
+    }
+
+    /// The damped acceleration (4.14), m/s2, in matrix form: from J, the desired joint-side
+    /// acceleration a_d* (m/s2) and the twist q_dot (m/s). `None` if J is singular and undamped.
+    ///
+    /// [`super::SingularBasis`] is the same by singular values (4.10), (4.15) and cheaper for many
+    /// dampings; this form can be differentiated through.
+    pub fn acceleration(
+        &self,
+        jacobian: &Matrix6<T>,
+        desired: &Vector6<T>,
+        twist: &Vector6<T>,
+        rho_hd: T,
+    ) -> Option<Vector6<T>> {
+        let square = self.rho * self.rho;
+        let gram = jacobian.tr_mul(jacobian) + Matrix6::identity() * (square + constant(SMALLEST_SQUARE));
+        let right = jacobian.tr_mul(desired) - twist * (rho_hd * square);
+        gram.cholesky().map(|factor| factor.solve(&right))
+    }
+}

@@ -1,0 +1,203 @@
+//! The search itself.
+
+use rand::Rng;
+
+use super::particle::{Motion, Particle};
+use super::rank::Ranking;
+use super::{Bounds, DecaySchedule, Selection, Settings, SettingsError, inertia};
+
+/// A modified particle swarm over a box in `D` dimensions: settings and workspace. It keeps
+/// nothing from one search for the next; pass the last optimum as the warm start for that.
+#[derive(Debug, Clone)]
+pub struct Swarm<const D: usize> {
+    settings: Settings,
+    motion: Motion<D>,
+    /// 1 / width of the members' ranges, which makes distances commensurate; 0 for fixed members.
+    scale: [f64; D],
+    /// The combined population, parents and offspring in no particular place.
+    particles: Vec<Particle<D>>,
+    /// Indices into `particles`: first the PS individuals of the present generation, then the
+    /// places where their offspring go.
+    order: Vec<usize>,
+    ranking: Ranking,
+}
+
+/// The best point a search has found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Solution<const D: usize> {
+    /// Where it is, within the bounds.
+    pub position: [f64; D],
+    /// The objective there; infinite if it was finite nowhere.
+    pub value: f64,
+    /// Iterations made.
+    pub iterations: usize,
+    /// Evaluations of the objective: PS of the initial swarm and PS an iteration.
+    pub evaluations: usize,
+}
+
+/// How a search stands at the end of an iteration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Progress {
+    /// Iterations made; 0 stands for the initial swarm.
+    pub iteration: usize,
+    /// Smallest objective so far.
+    pub best_value: f64,
+    /// Decay scale s (3.5) for the next iteration.
+    pub decay_scale: f64,
+}
+
+impl<const D: usize> Swarm<D> {
+    /// A swarm for `bounds`, with all the memory its searches need.
+    ///
+    /// # Errors
+    /// The first setting that is out of its range.
+    pub fn new(bounds: Bounds<D>, settings: Settings) -> Result<Self, SettingsError> {
+        settings.check()?;
+        let population = 2 * settings.swarm_size;
+        Ok(Self {
+            settings,
+            motion: Motion::new(bounds, &settings),
+            scale: bounds.width().map(|w| if w > 0.0 { 1.0 / w } else { 0.0 }),
+            particles: vec![Particle::default(); population],
+            order: (0..population).collect(),
+            ranking: Ranking::new(population),
+        })
+    }
+
+    /// Searches the minimum of `objective`.
+    ///
+    /// `warm_start`, clamped to the bounds, is one of the initial individuals; it is ignored if a
+    /// member is not finite. Values of the objective that are not finite count as worst.
+    pub fn minimize(
+        &mut self,
+        rng: &mut impl Rng,
+        warm_start: Option<[f64; D]>,
+        objective: impl FnMut(&[f64; D]) -> f64,
+    ) -> Solution<D> {
+        self.minimize_observed(rng, warm_start, objective, |_| {})
+    }
+
+    /// [`minimize`](Self::minimize) that tells `observer` about the initial swarm and every iteration.
+    pub fn minimize_observed(
+        &mut self,
+        rng: &mut impl Rng,
+        warm_start: Option<[f64; D]>,
+        mut objective: impl FnMut(&[f64; D]) -> f64,
+        mut observer: impl FnMut(&Progress),
+    ) -> Solution<D> {
+        let size = self.settings.swarm_size;
+        let mut decay = DecaySchedule::new(&self.settings);
+        let mut best = self.populate(rng, warm_start, &mut objective);
+        let mut iterations = 0;
+        let mut stalled = 0;
+        observer(&Progress { iteration: 0, best_value: best.error, decay_scale: decay.scale() });
+
+        while iterations < self.settings.max_iterations && stalled < self.settings.stall_iterations {
+            let improved = self.procreate(rng, inertia(&self.settings, iterations), &mut best, &mut objective);
+            match self.settings.selection {
+                Selection::Plain => self.order.rotate_left(size),
+                Selection::Ranked => self.select(&best, decay.scale()),
+            }
+            decay.advance(improved);
+            stalled = if improved { 0 } else { stalled + 1 };
+            iterations += 1;
+            observer(&Progress { iteration: iterations, best_value: best.error, decay_scale: decay.scale() });
+        }
+        Solution { position: best.position, value: best.error, iterations, evaluations: size * (1 + iterations) }
+    }
+
+    /// Scatters the initial swarm and returns its best individual.
+    fn populate(
+        &mut self,
+        rng: &mut impl Rng,
+        warm_start: Option<[f64; D]>,
+        objective: &mut impl FnMut(&[f64; D]) -> f64,
+    ) -> Best<D> {
+        // The order a former search left behind must not matter.
+        for (k, index) in self.order.iter_mut().enumerate() {
+            *index = k;
+        }
+        let size = self.settings.swarm_size;
+        for particle in &mut self.particles[..size] {
+            *particle = self.motion.scatter(rng);
+        }
+        if let Some(start) = warm_start.filter(|start| start.iter().all(|x| x.is_finite())) {
+            self.particles[0].place(self.motion.bounds.clamp(&start));
+        }
+        let mut best = Best { index: 0, position: self.particles[0].position, error: f64::INFINITY };
+        for index in 0..size {
+            let error = self.evaluate(index, objective);
+            best.update(index, &self.particles[index], error);
+        }
+        best
+    }
+
+    /// Moves every individual of the generation into an offspring of its own; tells whether one of
+    /// them is a new best.
+    fn procreate(
+        &mut self,
+        rng: &mut impl Rng,
+        w: f64,
+        best: &mut Best<D>,
+        objective: &mut impl FnMut(&[f64; D]) -> f64,
+    ) -> bool {
+        // All of a generation are drawn to the best of the one before (3.1).
+        let attractor = best.position;
+        let mut improved = false;
+        for j in 0..self.settings.swarm_size {
+            let index = self.order[self.settings.swarm_size + j];
+            let [parent, child] =
+                self.particles.get_disjoint_mut([self.order[j], index]).expect("the order holds every index once");
+            self.motion.beget(parent, child, &attractor, w, rng);
+            let error = self.evaluate(index, objective);
+            improved |= best.update(index, &self.particles[index], error);
+        }
+        improved
+    }
+
+    /// Evaluates an individual and notes its error wherever it is needed.
+    fn evaluate(&mut self, index: usize, objective: &mut impl FnMut(&[f64; D]) -> f64) -> f64 {
+        let particle = &mut self.particles[index];
+        let value = objective(&particle.position);
+        let error = if value.is_finite() { value } else { f64::INFINITY };
+        particle.remember(error);
+        self.ranking.set_error(index, error);
+        error
+    }
+
+    /// Lets the PS individuals with the smallest scores (3.3) survive, and the best in any case.
+    fn select(&mut self, best: &Best<D>, s: f64) {
+        for (k, particle) in self.particles.iter().enumerate() {
+            let mut squared = 0.0; // (3.4)
+            for g in 0..D {
+                let difference = self.scale[g] * (particle.position[g] - best.position[g]);
+                squared += difference * difference;
+            }
+            self.ranking.set_squared_distance(k, squared);
+        }
+        self.order.copy_from_slice(self.ranking.by_score(s));
+        let size = self.settings.swarm_size;
+        if let Some(place) = self.order[size..].iter().position(|&k| k == best.index) {
+            self.order.swap(size - 1, size + place);
+        }
+    }
+}
+
+/// The best individual so far.
+struct Best<const D: usize> {
+    /// Its index in the combined population; the ranked selection keeps it there.
+    index: usize,
+    position: [f64; D],
+    error: f64,
+}
+
+impl<const D: usize> Best<D> {
+    /// Takes over `particle` if its error is smaller; tells whether it was.
+    fn update(&mut self, index: usize, particle: &Particle<D>, error: f64) -> bool {
+        let improved = error < self.error;
+        if improved {
+            *self = Self { index, position: particle.position, error };
+        }
+        improved
+    }
+}

@@ -1,0 +1,66 @@
+//! The damped acceleration in the singular basis of J.
+
+use nalgebra::{Matrix3x6, Matrix6, SVector, Vector3, Vector6};
+
+use super::damping::SMALLEST_SQUARE;
+use super::{Damping, Situation};
+
+/// J = U S V^T (4.9) with what (4.10) and (4.15) need of a situation: evaluating a damping is then
+/// a handful of operations.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SingularBasis {
+    /// Squares of the singular values.
+    squares: Vector6<f64>,
+    /// sigma_i u_i^T a_d*
+    desired: Vector6<f64>,
+    /// v_i^T q_dot
+    twist: Vector6<f64>,
+    right: Matrix6<f64>,
+    /// T^+ V: singular coordinates to s_ddot.
+    to_coordinates: Matrix3x6<f64>,
+    /// T^+ T_dot s_dot
+    coordinate_bias: Vector3<f64>,
+    /// Smallest singular value, dimensionless.
+    pub sigma_min: f64,
+}
+
+impl SingularBasis {
+    /// Decomposes J of `situation`.
+    pub fn new(situation: &Situation<f64>) -> Self {
+        let svd = situation.jacobian.svd_unordered(true, true);
+        // both were asked for; a J with a NaN gives NaNs here, which the caller refuses
+        let left = svd.u.unwrap_or_else(Matrix6::zeros);
+        let right = svd.v_t.unwrap_or_else(Matrix6::zeros).transpose();
+        let sigma = svd.singular_values;
+        Self {
+            squares: sigma.component_mul(&sigma),
+            desired: left.tr_mul(&situation.desired).component_mul(&sigma),
+            twist: right.tr_mul(&situation.twist),
+            to_coordinates: situation.to_coordinates * right,
+            coordinate_bias: situation.coordinate_bias,
+            right,
+            sigma_min: sigma.min(),
+        }
+    }
+
+    /// Coordinates of q_ddot_hd (4.14) along the right singular vectors, m/s2: (4.10) and (4.15).
+    #[inline]
+    fn singular_coordinates(&self, rho: f64, rho_hd: f64) -> Vector6<f64> {
+        let square = rho * rho;
+        let velocity = rho_hd * square;
+        SVector::from_fn(|i, _| {
+            (self.desired[i] - velocity * self.twist[i]) / (self.squares[i] + square + SMALLEST_SQUARE)
+        })
+    }
+
+    /// q_ddot_hd (4.14), m/s2.
+    pub fn acceleration(&self, damping: &Damping<f64>, sample_time: f64) -> Vector6<f64> {
+        self.right * self.singular_coordinates(damping.rho, damping.rho_hd(self.sigma_min, sample_time))
+    }
+
+    /// s_ddot that belongs to it, (m, rad, rad)/s2.
+    #[inline]
+    pub fn coordinate_acceleration(&self, rho: f64, rho_hd: f64) -> Vector3<f64> {
+        self.to_coordinates * self.singular_coordinates(rho, rho_hd) - self.coordinate_bias
+    }
+}
