@@ -33,7 +33,8 @@ class Case:
 
 def write(directory: Path, cases: list[Case], radius: float) -> Path:
     """Writes the report into `directory` and returns its HTML page; `radius` as in `metrics.pose_error`."""
-    directory.mkdir(parents=True, exist_ok=True)
+    for part in ("data", "plots"):
+        (directory / part).mkdir(parents=True, exist_ok=True)
     markdown = ["# Crossing a direct singularity", "", _INTRODUCTION, ""]
     page = ["<h1>Crossing a direct singularity</h1>", f"<p>{html.escape(_INTRODUCTION)}</p>"]
     for case in cases:
@@ -43,9 +44,9 @@ def write(directory: Path, cases: list[Case], radius: float) -> Path:
         page += [f"<h2>{html.escape(title)}</h2>", html_table(header, rows)]
         for mode, run in case.runs.items():
             stem = f"{case.stem}-{mode.lower().replace('+', '-')}"
-            _write_csv(directory / f"{stem}.csv", run)
+            _write_csv(directory / "data" / f"{stem}.csv", run)
         for stem, panels in plots.figures(radius).items():
-            image = f"{case.stem}-{stem}.svg"
+            image = f"plots/{case.stem}-{stem}.svg"
             plots.draw(directory / image, title, case.runs, panels)
             markdown += [f"![{stem}]({image})", ""]
             page += [f'<p><img src="{image}" alt="{stem}"></p>']

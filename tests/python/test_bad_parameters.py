@@ -28,7 +28,7 @@ CONTROLLER: dict[str, dict[str, Value]] = {
     "zero sample time": {"sample_time": 0.0},
     "unknown control mode": {"control_mode": 9},
     "unknown profile": {"profile": 0},
-    "empty search range": {"rho_min": 0.5, "rho_max": 0.1},
+    "negative search range": {"rho_max": -0.1},
     "negative inductance": {"motor_la": -1e-3},
 }
 

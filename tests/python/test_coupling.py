@@ -7,7 +7,7 @@ from rps3_study.fmu import Fmu, Value
 from rps3_study.metrics import figures, joint_circle_radius
 from rps3_study.tasks import tasks
 
-RAC, DRAC, HDRAC = 1, 2, 3
+RAC, DRAC, HDRAC, MPSO = 1, 2, 3, 4
 RADIUS = joint_circle_radius(0.3616)
 VARIANTS = pytest.mark.parametrize("revolute_motors", [True, False], ids=["six motors", "three motors"])
 
@@ -19,7 +19,7 @@ def cross(plant: Fmu, controller: Fmu, mode: int, revolute_motors: bool = True, 
 
 
 @VARIANTS
-@pytest.mark.parametrize("mode", [RAC, DRAC, HDRAC])
+@pytest.mark.parametrize("mode", [RAC, DRAC, HDRAC, MPSO])
 def test_default_crossing_is_finished_in_every_mode(
     plant: Fmu, controller: Fmu, mode: int, revolute_motors: bool
 ) -> None:
@@ -46,10 +46,19 @@ def test_undamped_acceleration_breaks_down_at_the_singularity_where_damped_does_
 
 
 @VARIANTS
-def test_robot_comes_to_rest_at_the_end_of_the_crossing(plant: Fmu, controller: Fmu, revolute_motors: bool) -> None:
-    run = cross(plant, controller, DRAC, revolute_motors)
+def test_tuned_damping_brings_the_robot_to_rest_at_the_end(plant: Fmu, controller: Fmu, revolute_motors: bool) -> None:
+    run = cross(plant, controller, MPSO, revolute_motors)
     assert abs(run["plant.heave_dot"][-1]) < 1e-2
-    assert run["plant.heave"][-1] == pytest.approx(float(controller.variables["end_heave"].start), abs=2e-3)
+    assert run["plant.heave"][-1] == pytest.approx(float(controller.variables["end_heave"].start), abs=1e-3)
+
+
+@VARIANTS
+def test_tuned_damping_tracks_better_than_any_fixed_one(plant: Fmu, controller: Fmu, revolute_motors: bool) -> None:
+    errors = {
+        mode: figures(cross(plant, controller, mode, revolute_motors), RADIUS).peak_error
+        for mode in (RAC, DRAC, HDRAC, MPSO)
+    }
+    assert errors[MPSO] < 0.5 * min(errors[RAC], errors[DRAC], errors[HDRAC])
 
 
 def test_coupled_run_does_not_depend_on_the_communication_step(plant: Fmu, controller: Fmu) -> None:

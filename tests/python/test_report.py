@@ -48,12 +48,14 @@ def test_report_holds_table_plots_and_data_and_is_the_same_when_written_again(tm
     runs = {"DRAC": made_up_run(), "HDRAC+MPSO": made_up_run("no | such mode", length=0)}
     cases = [report.Case(Task("smooth", "Crossing", {}), "six motors", runs)]
     first, second = (report.write(tmp_path / name, cases, RADIUS).parent for name in ("first", "second"))
-    files = sorted(path.name for path in first.iterdir())
-    assert {"index.html", "report.md", "smooth-six-motors-drac.csv", "smooth-six-motors-control.svg"} <= set(files)
+    files = sorted(str(path.relative_to(first).as_posix()) for path in first.rglob("*.*"))
+    assert {"index.html", "report.md", "data/smooth-six-motors-drac.csv", "plots/smooth-six-motors-control.svg"} <= set(
+        files
+    )
     for name in files:
         assert (first / name).read_bytes() == (second / name).read_bytes(), name
     text = (first / "report.md").read_text()
     assert "| DRAC | 2 | 1.41 | 12 | 1 | 0.93 |  |" in text
     assert "ended early: no \\| such mode" in text
-    data = np.genfromtxt(first / "smooth-six-motors-drac.csv", delimiter=",", names=True, deletechars="")
+    data = np.genfromtxt(first / "data" / "smooth-six-motors-drac.csv", delimiter=",", names=True, deletechars="")
     assert data["plant.heave"][0] == 1e-3
