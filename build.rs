@@ -26,7 +26,8 @@ mod models {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let sources = ["defaults.rs", "description", "models/common_table.rs", "models/controller/table.rs", "models/plant/table.rs"];
+    let sources =
+        ["defaults.rs", "description", "models/common_table.rs", "models/controller/table.rs", "models/plant/table.rs"];
     println!("cargo::rerun-if-changed=build.rs");
     for source in sources {
         println!("cargo::rerun-if-changed=src/{source}");
@@ -40,7 +41,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     {
         let identifier = definition.model_identifier;
         let guid = guid(&description::render(&definition, &version, "")?);
-        fs::write(Path::new(&out_dir).join(format!("{identifier}.xml")), description::render(&definition, &version, &guid)?)?;
+        fs::write(
+            Path::new(&out_dir).join(format!("{identifier}.xml")),
+            description::render(&definition, &version, &guid)?,
+        )?;
         constants += &format!(
             "/// The model description of {identifier}.\n\
              pub const {name}: ModelDescription = ModelDescription {{\n\

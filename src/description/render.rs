@@ -142,10 +142,7 @@ fn log_categories() -> schema::LogCategories<'static> {
     schema::LogCategories { categories: own.into_iter().chain([all]).collect() }
 }
 
-fn scalar_variable<'a>(
-    variable: &'a Variable,
-    index: &Index<'_>,
-) -> Result<schema::ScalarVariable<'a>, RenderError> {
+fn scalar_variable<'a>(variable: &'a Variable, index: &Index<'_>) -> Result<schema::ScalarVariable<'a>, RenderError> {
     Ok(schema::ScalarVariable {
         name: &variable.name,
         value_reference: variable.value_reference,

@@ -47,7 +47,10 @@ pub unsafe fn instantiate<M: Model>(
     let logger = Logger::new(callbacks, name.unwrap_or_default(), logging_on != FALSE);
     let instance = catch_unwind(AssertUnwindSafe(|| {
         let interface = check_instantiation::<M>(name, fmu_type, guid)?;
-        Ok(Box::new(Instance::<M>::new(interface, Logger::new(callbacks, name.unwrap_or_default(), logging_on != FALSE))))
+        Ok(Box::new(Instance::<M>::new(
+            interface,
+            Logger::new(callbacks, name.unwrap_or_default(), logging_on != FALSE),
+        )))
     }));
     let refusal: CallError = match instance {
         Ok(Ok(instance)) => return Box::into_raw(instance).cast(),

@@ -55,25 +55,25 @@ impl<M: Model> Instance<M> {
         let refuse = |message: String| Err(CallError::Refused(message));
         let from = self.now.time;
         if !(step.is_finite() && step > 0.0) {
-            return refuse(format!("communication step size {step} s is not positive and finite"));
+            return refuse(format!("communication step size {step:?} s is not positive and finite"));
         }
         if step > MAX_STEP {
-            return refuse(format!("communication step size {step} s is larger than {MAX_STEP} s"));
+            return refuse(format!("communication step size {step:?} s is larger than {MAX_STEP:?} s"));
         }
         let tolerance = time_tolerance(from, step);
         if !point.is_finite() || (point - from).abs() > tolerance {
-            return refuse(format!("communication point {point} s is not the current time {from} s"));
+            return refuse(format!("communication point {point:?} s is not the current time {from:?} s"));
         }
         let to = point + step;
         if to <= from || to.abs() > MAX_TIME {
-            return refuse(format!("a step of {step} s from {point} s is beyond the resolution of time"));
+            return refuse(format!("a step of {step:?} s from {point:?} s is beyond the resolution of time"));
         }
         if let Some(experiment) = self.now.experiment
             && let Some(stop) = experiment.stop_time
         {
             let overshoot = STOP_TIME_OVERSHOOT * (stop - experiment.start_time);
             if from > stop + tolerance || to > stop + overshoot + tolerance {
-                return refuse(format!("a step to {to} s is past the stop time {stop} s"));
+                return refuse(format!("a step to {to:?} s is past the stop time {stop:?} s"));
             }
         }
         Ok((from, to))
@@ -103,7 +103,7 @@ impl<M: Model> Instance<M> {
             input(reference)?;
             order_of(order)?;
             if !value.is_finite() {
-                return Err(CallError::Refused(format!("input derivative {value} is not finite")));
+                return Err(CallError::Refused(format!("input derivative {value:?} is not finite")));
             }
         }
         for ((&reference, &order), &value) in references.iter().zip(orders).zip(values) {

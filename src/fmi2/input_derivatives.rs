@@ -13,7 +13,7 @@ pub const MAX_ORDER: usize = 4;
 /// They hold for one step from the time they were set at. After it they still tell the inputs'
 /// rates at its end, which output derivatives need, but a further step has constant inputs unless
 /// new ones are set.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub struct InputDerivatives {
     /// By continuous input and order - 1, unit of the input by s^order.
     terms: Vec<[f64; MAX_ORDER]>,
@@ -30,6 +30,17 @@ enum Phase {
     Pending,
     /// Of the step that was made last.
     Used,
+}
+
+impl Clone for InputDerivatives {
+    fn clone(&self) -> Self {
+        Self { terms: self.terms.clone(), ..*self }
+    }
+
+    fn clone_from(&mut self, source: &Self) {
+        self.terms.clone_from(&source.terms);
+        (self.phase, self.origin) = (source.phase, source.origin);
+    }
 }
 
 impl InputDerivatives {
@@ -92,9 +103,7 @@ impl InputDerivatives {
         match self.phase {
             Phase::None => 0.0,
             Phase::Pending => self.terms[input][0],
-            Phase::Used => {
-                horner(&self.terms[input], t - self.origin, |k| if k == 0 { 1.0 } else { 1.0 / k as f64 })
-            }
+            Phase::Used => horner(&self.terms[input], t - self.origin, |k| if k == 0 { 1.0 } else { 1.0 / k as f64 }),
         }
     }
 }

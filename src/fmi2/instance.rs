@@ -17,7 +17,7 @@ use super::types::{Interface, Status};
 use crate::description::LogCategory;
 
 /// Everything that an FMU state holds: cloned by `fmi2GetFMUstate`, serialized to bytes.
-#[derive(Clone, Serialize, Deserialize)]
+#[derive(Serialize, Deserialize)]
 #[serde(bound(serialize = "M: Serialize", deserialize = "M: DeserializeOwned"))]
 pub(super) struct Snapshot<M> {
     pub interface: Interface,
@@ -43,7 +43,7 @@ pub struct Instance<M> {
     pub(super) step_start: (M, Values),
     /// The states handed out, by the address that is their handle.
     pub(super) states: BTreeMap<usize, Box<Snapshot<M>>>,
-    /// Slots of unknowns and knowns, for directional derivatives without allocation.
+    /// Slots of unknowns and knowns, and the seed, of a directional derivative.
     pub(super) scratch: (Vec<usize>, Vec<usize>, Vec<f64>),
 }
 
@@ -53,7 +53,9 @@ impl<M: Model> Instance<M> {
         let layout = Layout::new(M::definition());
         let now: Snapshot<M> = Snapshot::new(interface, &layout);
         let step_start = (now.model.clone(), now.values.clone());
-        Self { layout, logger, now, step_start, states: BTreeMap::new(), scratch: Default::default() }
+        let reals = layout.reals.entries.len();
+        let scratch = (Vec::with_capacity(reals), Vec::with_capacity(reals), Vec::with_capacity(reals));
+        Self { layout, logger, now, step_start, states: BTreeMap::new(), scratch }
     }
 
     /// Runs `body` as the C function `function`: the one place where call order is checked and
@@ -114,7 +116,8 @@ impl<M: Model> Instance<M> {
     ///
     /// After an error or a discarded step values are for debugging only and stay as they are.
     pub(super) fn refresh(&mut self) -> CallResult {
-        if !self.now.stale || matches!(self.now.mode, Mode::Instantiated | Mode::StepFailed | Mode::Error | Mode::Fatal) {
+        if !self.now.stale || matches!(self.now.mode, Mode::Instantiated | Mode::StepFailed | Mode::Error | Mode::Fatal)
+        {
             return Ok(());
         }
         let Snapshot { model, values, time, mode, experiment, .. } = &mut self.now;
@@ -140,6 +143,30 @@ impl<M: Model> Instance<M> {
                 Err(CallError::Discard(format!("{name} is not finite")))
             }
         }
+    }
+}
+
+impl<M: Clone> Clone for Snapshot<M> {
+    fn clone(&self) -> Self {
+        Self {
+            model: self.model.clone(),
+            values: self.values.clone(),
+            input_derivatives: self.input_derivatives.clone(),
+            ..*self
+        }
+    }
+
+    /// Reuses what is allocated, so that getting and setting a state again and again is cheap.
+    fn clone_from(&mut self, source: &Self) {
+        self.model.clone_from(&source.model);
+        self.values.clone_from(&source.values);
+        self.input_derivatives.clone_from(&source.input_derivatives);
+        self.interface = source.interface;
+        self.mode = source.mode;
+        self.time = source.time;
+        self.experiment = source.experiment;
+        self.stale = source.stale;
+        self.discrete_states_settled = source.discrete_states_settled;
     }
 }
 

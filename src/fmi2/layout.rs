@@ -53,7 +53,8 @@ impl Table {
         let variables = definition.variables.iter().enumerate().filter(|(_, v)| v.variable_type() == variable_type);
         let mut inputs = 0;
         let entries: Vec<Entry> = variables.clone().map(|(i, v)| entry(definition, i, v, &mut inputs)).collect();
-        let mut pairs: Vec<(u32, usize)> = variables.enumerate().map(|(slot, (_, v))| (v.value_reference, slot)).collect();
+        let mut pairs: Vec<(u32, usize)> =
+            variables.enumerate().map(|(slot, (_, v))| (v.value_reference, slot)).collect();
         pairs.sort_unstable();
         let (references, slots) = pairs.into_iter().unzip();
         Self { entries, references, slots }

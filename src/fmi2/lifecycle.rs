@@ -12,20 +12,25 @@ pub const MAX_TIME: f64 = 1e9;
 
 impl<M: Model> Instance<M> {
     /// `fmi2SetupExperiment`
-    pub(super) fn setup_experiment(&mut self, tolerance: Option<f64>, start_time: f64, stop_time: Option<f64>) -> CallResult {
+    pub(super) fn setup_experiment(
+        &mut self,
+        tolerance: Option<f64>,
+        start_time: f64,
+        stop_time: Option<f64>,
+    ) -> CallResult {
         let refuse = |message: String| Err(CallError::Refused(message));
         if let Some(tolerance) = tolerance
             && !(tolerance.is_finite() && tolerance > 0.0)
         {
-            return refuse(format!("tolerance {tolerance} is not positive and finite"));
+            return refuse(format!("tolerance {tolerance:?} is not positive and finite"));
         }
         if !start_time.is_finite() || start_time.abs() > MAX_TIME {
-            return refuse(format!("start time {start_time} s is not within +-{MAX_TIME:e} s"));
+            return refuse(format!("start time {start_time:?} s is not within +-{MAX_TIME:e} s"));
         }
         if let Some(stop_time) = stop_time
             && !(stop_time.is_finite() && stop_time > start_time)
         {
-            return refuse(format!("stop time {stop_time} s is not after the start time {start_time} s"));
+            return refuse(format!("stop time {stop_time:?} s is not after the start time {start_time:?} s"));
         }
         self.now.experiment = Some(Experiment { start_time, stop_time, tolerance });
         self.set_current_time(start_time);

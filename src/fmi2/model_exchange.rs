@@ -35,7 +35,7 @@ impl<M: Model> Instance<M> {
         let next_event_time = update.next_event_time.unwrap_or(0.0);
         if update.next_event_time.is_some() && !(next_event_time.is_finite() && next_event_time > now.time) {
             // the host would handle events for ever
-            return Err(CallError::Failed(format!("the next event, at {next_event_time} s, is not in the future")));
+            return Err(CallError::Failed(format!("the next event, at {next_event_time:?} s, is not in the future")));
         }
         Ok(EventInfo {
             values_of_continuous_states_changed: if update.states_changed { TRUE } else { FALSE },
@@ -53,7 +53,7 @@ impl<M: Model> Instance<M> {
     /// `fmi2SetTime`
     pub(super) fn set_time(&mut self, time: f64) -> CallResult {
         if !time.is_finite() || time.abs() > MAX_TIME {
-            return Err(CallError::Refused(format!("time {time} s is not within +-{MAX_TIME:e} s")));
+            return Err(CallError::Refused(format!("time {time:?} s is not within +-{MAX_TIME:e} s")));
         }
         if time == self.now.time {
             return Ok(());
@@ -74,7 +74,7 @@ impl<M: Model> Instance<M> {
     pub(super) fn set_continuous_states(&mut self, states: &[f64]) -> CallResult {
         check_length("continuous states", states.len(), self.layout.derivatives.len())?;
         if let Some(i) = states.iter().position(|x| !x.is_finite()) {
-            return Err(CallError::Refused(format!("continuous state {i} = {} is not finite", states[i])));
+            return Err(CallError::Refused(format!("continuous state {i} = {:?} is not finite", states[i])));
         }
         self.now.model.continuous_states_mut().copy_from_slice(states);
         self.now.stale |= !states.is_empty();

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::description::{Definition, Kind, VariableType};
 
 /// Values by base type and slot.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub struct Values {
     /// Real values, in the units of the table.
     pub reals: Vec<f64>,
@@ -16,6 +16,19 @@ pub struct Values {
     pub integers: Vec<i32>,
     /// Boolean values.
     pub booleans: Vec<bool>,
+}
+
+impl Clone for Values {
+    fn clone(&self) -> Self {
+        Self { reals: self.reals.clone(), integers: self.integers.clone(), booleans: self.booleans.clone() }
+    }
+
+    /// Reuses what is allocated: every communication step copies the values.
+    fn clone_from(&mut self, source: &Self) {
+        self.reals.clone_from(&source.reals);
+        self.integers.clone_from(&source.integers);
+        self.booleans.clone_from(&source.booleans);
+    }
 }
 
 impl Values {

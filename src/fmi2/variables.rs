@@ -1,5 +1,7 @@
 //! Getting and setting variables (FMI 2.0 section 2.1.7).
 
+use std::fmt::Debug;
+
 use super::call_table::Mode;
 use super::error::{CallError, CallResult};
 use super::instance::Instance;
@@ -16,7 +18,13 @@ pub(super) fn slot(table: &Table, type_name: &str, reference: ValueReference) ->
 
 impl Layout {
     /// The slot behind `reference` if that variable may be set in `mode`.
-    fn settable_slot(&self, table: &Table, type_name: &str, reference: ValueReference, mode: Mode) -> CallResult<usize> {
+    fn settable_slot(
+        &self,
+        table: &Table,
+        type_name: &str,
+        reference: ValueReference,
+        mode: Mode,
+    ) -> CallResult<usize> {
         let slot = slot(table, type_name, reference)?;
         let entry = &table.entries[slot];
         if entry.settable.contains(mode) {
@@ -30,14 +38,14 @@ impl Layout {
         }
     }
 
-    fn check_limits(&self, entry: &Entry, value: f64) -> CallResult {
-        let name = self.name(entry);
-        if !value.is_finite() {
-            Err(CallError::Refused(format!("{name} = {value} is not finite")))
-        } else if value < entry.min {
-            Err(CallError::Refused(format!("{name} = {value} is below its minimum {}", entry.min)))
-        } else if value > entry.max {
-            Err(CallError::Refused(format!("{name} = {value} is above its maximum {}", entry.max)))
+    fn check_limits<T: Copy + Debug + Into<f64>>(&self, entry: &Entry, value: T) -> CallResult {
+        let (name, number) = (self.name(entry), value.into());
+        if !number.is_finite() {
+            Err(CallError::Refused(format!("{name} = {value:?} is not finite")))
+        } else if number < entry.min {
+            Err(CallError::Refused(format!("{name} = {value:?} is below its minimum {:?}", entry.min)))
+        } else if number > entry.max {
+            Err(CallError::Refused(format!("{name} = {value:?} is above its maximum {:?}", entry.max)))
         } else {
             Ok(())
         }
@@ -125,7 +133,7 @@ impl<M: Model> Instance<M> {
         let Self { layout, now, .. } = self;
         for (&reference, &value) in references.iter().zip(values) {
             let slot = layout.settable_slot(&layout.integers, "Integer", reference, now.mode)?;
-            layout.check_limits(&layout.integers.entries[slot], f64::from(value))?;
+            layout.check_limits(&layout.integers.entries[slot], value)?;
         }
         for (&reference, &value) in references.iter().zip(values) {
             now.values.integers[slot(&layout.integers, "Integer", reference)?] = value;
