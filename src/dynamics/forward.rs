@@ -40,6 +40,7 @@ pub fn evaluate<T: Scalar>(model: &PlantModel<T>, x: &PlantState<T>, inputs: &In
     let angle_rates = Vector3::from_fn(|i, _| limb_motions[i].angle_rate);
 
     let mut leg_forces = i_leg * motors.leg.force_constant - length_rates * motors.leg.reflected_friction;
+    // open circuits carry no current: i_rev stays zero without revolute motors
     let mut revolute_torques =
         i_rev * motors.revolute.force_constant - angle_rates * motors.revolute.reflected_friction;
     if let Some(stops) = &model.stops {

@@ -16,14 +16,15 @@ pub struct Drive<T> {
     pub reflected_friction: T,
 }
 
-/// The six motors; without revolute motors the second drive is absent (all zero).
+/// The six motors. Without revolute motors their circuits are open: no current, no torque, but the
+/// rotors still turn with the gears, so that both variants are one mechanism with one mass matrix.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motors<T> {
     /// Through the screw, ratio 2 pi / lead (rad/m).
     pub leg: Drive<T>,
     /// Through the gear.
     pub revolute: Drive<T>,
-    /// There are motors on the revolute joints.
+    /// The revolute motors are powered.
     pub revolute_motors: bool,
     /// Armature inductance, H.
     pub inductance: T,
@@ -45,10 +46,9 @@ impl<T: Scalar> Drive<T> {
 
 impl<T: Scalar> Motors<T> {
     pub(super) fn new(parameters: &MechanismParameters<T>) -> Self {
-        let ratio = if parameters.revolute_motors { parameters.gear_ratio } else { T::zero() };
         Self {
             leg: Drive::new(parameters, constant::<T>(std::f64::consts::TAU) / parameters.screw_lead),
-            revolute: Drive::new(parameters, ratio),
+            revolute: Drive::new(parameters, parameters.gear_ratio),
             revolute_motors: parameters.revolute_motors,
             inductance: parameters.motor_la,
             resistance: parameters.motor_ra,

@@ -50,7 +50,7 @@ pub struct MechanismParameters<T = f64> {
     pub gravity: T,
     /// Terminal voltage limit, V.
     pub v_max: T,
-    /// Six motors; else the three leg motors alone.
+    /// Six motors; else the leg motors alone, the revolute motors' circuits being open.
     pub revolute_motors: bool,
 }
 
