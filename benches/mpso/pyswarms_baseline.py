@@ -5,7 +5,6 @@ iterations, a sum of squares in 2 and 3 members. Its objective sees all particle
 """
 
 import logging
-import statistics
 import time
 
 import numpy as np
@@ -30,9 +29,9 @@ def main():
             begin = time.perf_counter()
             search(members)
             seconds.append(time.perf_counter() - begin)
-        median = statistics.median(seconds)
+        fastest = min(seconds)  # the one least disturbed by other work on the machine
         evaluations = SIZE * (ITERATIONS + 1)
-        print(f"{members} members: {median * 1e6:.0f} us a search, {median / evaluations * 1e9:.0f} ns an evaluation")
+        print(f"{members} members: {fastest * 1e6:.0f} us a search, {fastest / evaluations * 1e9:.0f} ns an evaluation")
 
 
 if __name__ == "__main__":
