@@ -4,7 +4,9 @@ iterations, a sum of squares in 2 and 3 members. Its objective sees all particle
     pip install pyswarms && python benches/mpso/pyswarms_baseline.py
 """
 
+import contextlib
 import logging
+import tempfile
 import time
 
 import numpy as np
@@ -35,4 +37,6 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    # pyswarms leaves a report.log in the working directory.
+    with tempfile.TemporaryDirectory() as directory, contextlib.chdir(directory):
+        main()

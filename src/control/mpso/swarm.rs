@@ -201,3 +201,31 @@ impl<const D: usize> Best<D> {
         improved
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+    use rand_xoshiro::Xoshiro256PlusPlus;
+
+    use super::*;
+
+    #[test]
+    fn the_best_survives_even_where_its_score_is_poor() {
+        // Distance counts far more than error: the best, at distance 0, has the largest score.
+        let settings = Settings { decay_max: 1e3, decay_min: 1e3, ..Settings::default() };
+        let mut swarm = Swarm::new(Bounds::new([-1.0; 2], [1.0; 2]).unwrap(), settings).unwrap();
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(1);
+        let mut bowl = |x: &[f64; 2]| x[0] * x[0] + x[1] * x[1];
+        let mut best = swarm.populate(&mut rng, None, &mut bowl);
+        for _ in 0..20 {
+            swarm.procreate(&mut rng, 0.7, &mut best, &mut bowl);
+            swarm.select(&best, 1e3);
+            // It takes the place of the last of the survivors.
+            assert_eq!(swarm.order[settings.swarm_size - 1], best.index);
+            assert_eq!(swarm.particles[best.index].position, best.position);
+            let mut indices = swarm.order.clone();
+            indices.sort_unstable();
+            assert!(indices.into_iter().eq(0..2 * settings.swarm_size), "every individual has one place");
+        }
+    }
+}
