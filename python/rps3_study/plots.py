@@ -48,7 +48,7 @@ def figures(radius: float) -> dict[str, list[Panel]]:
             Panel("pose error, mm", lambda run: pose_error(run, radius), scale="log"),
         ],
         "position": [Panel(f"{axis.upper()} of P, cm", _plant(f"p_{axis}", 100.0)) for axis in "xyz"],
-        "velocity": [Panel(f"velocity of P along {axis.upper()}, cm/s", _plant(f"v_{axis}", 100.0)) for axis in "xyz"],
+        "velocity": [Panel(f"velocity {axis.upper()}, cm/s", _plant(f"v_{axis}", 100.0)) for axis in "xyz"],
         "control": [
             Panel("sigma_min", _plant("sigma_min")),
             Panel("largest |voltage|, V", _largest_voltage),

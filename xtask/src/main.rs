@@ -17,6 +17,8 @@ mod ssp;
 mod test;
 mod workspace;
 
+use std::process::ExitCode;
+
 use clap::{Parser, Subcommand};
 
 #[derive(Parser)]
@@ -42,13 +44,21 @@ enum Task {
     Lint,
 }
 
-fn main() -> anyhow::Result<()> {
-    match Cli::parse().task {
+fn main() -> ExitCode {
+    let outcome = match Cli::parse().task {
         Task::Setup => setup::run(),
         Task::Describe => describe::run(),
         Task::Package(options) => package::run(&options),
         Task::Demo(options) => demo::run(&options),
         Task::Test(options) => test::run(&options),
         Task::Lint => lint::run(),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // without the backtrace that `main -> Result` would print: what failed is another program
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
     }
 }
