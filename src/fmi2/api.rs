@@ -10,12 +10,14 @@
 
 use std::ffi::{CStr, c_char, c_int};
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::OnceLock;
 
 use super::boundary::{enter, panic_message, slice, slice_mut, target, text};
 use super::call_table::Function;
 use super::co_simulation::no_such_status;
 use super::error::{CallError, CallResult};
 use super::instance::Instance;
+use super::layout::Layout;
 use super::logger::Logger;
 use super::model::Model;
 use super::types::{
@@ -34,23 +36,22 @@ pub fn get_version() -> *const c_char {
 }
 
 /// `fmi2Instantiate`. The resource location is not needed, so any is accepted; there is nothing to
-/// be made visible either.
+/// be made visible either. `layout` is where the library keeps what all its instances share.
 pub unsafe fn instantiate<M: Model>(
     instance_name: *const c_char,
     fmu_type: c_int,
     guid: *const c_char,
     functions: *const CallbackFunctions,
     logging_on: Boolean,
+    layout: &'static OnceLock<Layout>,
 ) -> Component {
     // SAFETY: the caller's promise (module documentation).
     let (name, guid, callbacks) = unsafe { (text(instance_name), text(guid), functions.as_ref().copied()) };
     let logger = Logger::new(callbacks, name.unwrap_or_default(), logging_on != FALSE);
     let instance = catch_unwind(AssertUnwindSafe(|| {
         let interface = check_instantiation::<M>(name, fmu_type, guid)?;
-        Ok(Box::new(Instance::<M>::new(
-            interface,
-            Logger::new(callbacks, name.unwrap_or_default(), logging_on != FALSE),
-        )))
+        let layout = layout.get_or_init(|| Layout::new(M::definition()));
+        Ok(Box::new(Instance::<M>::new(interface, layout, logger.clone())))
     }));
     let refusal: CallError = match instance {
         Ok(Ok(instance)) => return Box::into_raw(instance).cast(),

@@ -31,7 +31,7 @@ impl<M: Model> Instance<M> {
         self.step_start.1.clone_from(&self.now.values);
         self.now.input_derivatives.begin_step(from);
         let Snapshot { model, values, input_derivatives, .. } = &mut self.now;
-        let inputs = Inputs::new(&self.layout, &self.step_start.1.reals, input_derivatives);
+        let inputs = Inputs::new(self.layout, &self.step_start.1.reals, input_derivatives);
         let result = model
             .step(values, &inputs, from, to, &mut self.logger)
             .map_err(CallError::from)

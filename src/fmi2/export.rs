@@ -30,8 +30,12 @@ macro_rules! export_fmu {
             _visible: $crate::fmi2::types::Boolean,
             logging_on: $crate::fmi2::types::Boolean,
         ) -> $crate::fmi2::types::Component {
+            static LAYOUT: ::std::sync::OnceLock<$crate::fmi2::Layout> = ::std::sync::OnceLock::new();
             // SAFETY: passed on to the caller.
-            unsafe { $crate::fmi2::api::instantiate::<$model>(instance_name, fmu_type, guid, functions, logging_on) }
+            unsafe {
+                $crate::fmi2::api::instantiate::<$model>(
+                    instance_name, fmu_type, guid, functions, logging_on, &LAYOUT)
+            }
         }
 
         #[unsafe(no_mangle)]

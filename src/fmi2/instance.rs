@@ -36,7 +36,7 @@ pub(super) struct Snapshot<M> {
 
 /// An instance behind an `fmi2Component`.
 pub struct Instance<M> {
-    pub(super) layout: Layout,
+    pub(super) layout: &'static Layout,
     pub(super) logger: Logger,
     pub(super) now: Snapshot<M>,
     /// Model and values at the start of a communication step; kept to step without allocating.
@@ -49,9 +49,8 @@ pub struct Instance<M> {
 
 impl<M: Model> Instance<M> {
     /// A new instance in the state `instantiated`.
-    pub(super) fn new(interface: Interface, logger: Logger) -> Self {
-        let layout = Layout::new(M::definition());
-        let now: Snapshot<M> = Snapshot::new(interface, &layout);
+    pub(super) fn new(interface: Interface, layout: &'static Layout, logger: Logger) -> Self {
+        let now: Snapshot<M> = Snapshot::new(interface, layout);
         let step_start = (now.model.clone(), now.values.clone());
         let reals = layout.reals.entries.len();
         let scratch = (Vec::with_capacity(reals), Vec::with_capacity(reals), Vec::with_capacity(reals));
@@ -101,7 +100,7 @@ impl<M: Model> Instance<M> {
 
     /// `fmi2Reset`: as after `fmi2Instantiate`. Handed-out states and log switches stay.
     pub(super) fn reset(&mut self) {
-        self.now = Snapshot::new(self.now.interface, &self.layout);
+        self.now = Snapshot::new(self.now.interface, self.layout);
     }
 
     /// Sets the time and the independent variable.
@@ -121,15 +120,18 @@ impl<M: Model> Instance<M> {
             return Ok(());
         }
         let Snapshot { model, values, time, mode, experiment, .. } = &mut self.now;
-        match (mode, experiment) {
+        if let (Mode::Initialization, Some(experiment)) = (mode, experiment) {
             // what the parameters are worth is judged on leaving the mode: until then a host may
             // still be on its way to a consistent set
-            (Mode::Initialization, Some(experiment)) => model
+            model
                 .initialize(values, experiment, false, &mut self.logger)
-                .map_err(|error| CallError::refused(error.to_string()))?,
-            _ => model.update(values, *time)?,
+                .map_err(CallError::from)
+                .and_then(|()| self.check_finite())
+                .map_err(|error| CallError::Refused(error.to_string()))?;
+        } else {
+            model.update(values, *time)?;
+            self.check_finite()?;
         }
-        self.check_finite()?;
         self.now.stale = false;
         Ok(())
     }
@@ -185,7 +187,7 @@ impl<M: Model> Snapshot<M> {
         }
     }
 
-    /// Whether a deserialized snapshot fits the definition.
+    /// Whether a deserialized snapshot fits the definition and holds what could be saved.
     pub fn fits(&self, interface: Interface, layout: &Layout) -> bool {
         self.interface == interface
             && self.mode != Mode::Fatal
@@ -193,7 +195,11 @@ impl<M: Model> Snapshot<M> {
             && self.values.reals.len() == layout.reals.entries.len()
             && self.values.integers.len() == layout.integers.entries.len()
             && self.values.booleans.len() == layout.booleans.entries.len()
+            && self.values.reals.iter().zip(&layout.reals.entries).all(|(x, entry)| {
+                x.is_finite() || (entry.calculated && (self.stale || self.mode == Mode::Error))
+            })
             && self.model.continuous_states().len() == layout.derivatives.len()
+            && self.model.continuous_states().iter().all(|x| x.is_finite())
             && self.input_derivatives.len() == layout.continuous_inputs
             && self.input_derivatives.is_finite()
     }

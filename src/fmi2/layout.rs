@@ -61,21 +61,21 @@ impl Table {
     }
 }
 
-/// All of it.
+/// All of it: the same for every instance of a model, never changed.
 #[derive(Debug, Clone)]
 pub struct Layout {
-    pub definition: &'static Definition,
-    pub reals: Table,
-    pub integers: Table,
-    pub booleans: Table,
+    pub(super) definition: &'static Definition,
+    pub(super) reals: Table,
+    pub(super) integers: Table,
+    pub(super) booleans: Table,
     /// Slot of the independent variable.
-    pub time: Option<usize>,
+    pub(super) time: Option<usize>,
     /// Slots of the state derivatives, in the order of the states.
-    pub derivatives: Vec<usize>,
+    pub(super) derivatives: Vec<usize>,
     /// Number of continuous Real inputs.
-    pub continuous_inputs: usize,
+    pub(super) continuous_inputs: usize,
     /// No continuous states and no event indicators (footnote 8 of section 3.2.3).
-    pub pure_discrete_time: bool,
+    pub(super) pure_discrete_time: bool,
 }
 
 impl Layout {

@@ -11,7 +11,7 @@ use super::types::{CallbackFunctions, Status};
 use crate::description::{LOG_ALL, LogCategory};
 
 /// The host's logger with the categories that are on.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Logger {
     callbacks: Option<CallbackFunctions>,
     instance_name: CString,

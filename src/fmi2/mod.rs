@@ -35,6 +35,7 @@ pub use co_simulation::{MAX_STEP, STOP_TIME_OVERSHOOT};
 pub use error::{CallError, CallResult};
 pub use input_derivatives::MAX_ORDER as MAX_INPUT_DERIVATIVE_ORDER;
 pub use instance::Instance;
+pub use layout::Layout;
 pub use lifecycle::MAX_TIME;
 pub use model::{EventUpdate, Experiment, Log, Model, ModelError, ModelResult, StepInputs};
 pub use values::Values;

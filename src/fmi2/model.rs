@@ -113,6 +113,7 @@ pub trait Model: Clone + Serialize + DeserializeOwned + Send + 'static {
     /// Directional derivative: for each slot of `unknowns` (Real outputs, locals, derivatives) the
     /// derivative along `seed` over the Real slots of `knowns`. `initialization` tells which of the
     /// two structures counts. The layer has checked that knowns and unknowns are of the right sort.
+    #[allow(clippy::too_many_arguments)] // what fmi2GetDirectionalDerivative says, and where the model stands
     fn directional_derivative(
         &mut self,
         values: &Values,

@@ -46,7 +46,7 @@ impl<M: Model> Instance<M> {
     pub(super) fn deserialize(&mut self, bytes: &[u8]) -> CallResult<FmuState> {
         let snapshot: Snapshot<M> =
             state_bytes::read(M::guid(), bytes).map_err(|error| CallError::Refused(error.to_string()))?;
-        if !snapshot.fits(self.now.interface, &self.layout) {
+        if !snapshot.fits(self.now.interface, self.layout) {
             return Err(CallError::refused("the state does not fit this instance"));
         }
         Ok(self.hand_out(snapshot))

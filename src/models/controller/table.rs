@@ -15,6 +15,8 @@ pub fn definition() -> Definition {
         variables.iter().filter(|v| v.causality == Causality::Output).map(|v| v.name.clone()).collect();
     let input_names = names(&inputs);
     let exact = [input_names.clone(), names(&parameters)].concat();
+    // the internal reference runs with time
+    let at_ticks = [vec!["time".to_owned()], input_names].concat();
     let unknowns = |knowns: &[String]| {
         outputs
             .iter()
@@ -24,7 +26,7 @@ pub fn definition() -> Definition {
     Definition {
         model_identifier: "Rps3Controller",
         description: "Hybrid damped resolved-acceleration control of a 3-RPS manipulator, damping tuned by a particle swarm",
-        outputs: unknowns(&input_names),
+        outputs: unknowns(&at_ticks),
         derivatives: Vec::new(),
         initial_unknowns: unknowns(&exact),
         variables,
@@ -326,7 +328,8 @@ fn integers() -> Vec<Variable> {
 /// parameters for `InitialUnknowns`.
 fn dependencies(name: &str, knowns: &[String]) -> Vec<String> {
     let reference = |known: &str| {
-        known.starts_with("ref_")
+        known == "time"
+            || known.starts_with("ref_")
             || ["start_", "via_", "end_"].iter().any(|point| known.starts_with(point))
             || ["reference_mode", "profile", "move_time", "computation_delay", "sample_time"].contains(&known)
     };
