@@ -80,8 +80,7 @@ fn trajectory(
         x.fixed_rows_mut::<6>(6).copy_from(&currents);
         evaluate(model, &x, inputs).derivative.fixed_rows::<6>(0).into_owned()
     };
-    let settings =
-        Settings { tolerance: 1e-12, nominal: SVector::from([0.1, 0.1, 0.1, 1.0, 1.0, 1.0]), max_step: 0.01 };
+    let settings = Settings { tolerance: 1e-12, nominal: [0.1, 0.1, 0.1, 1.0, 1.0, 1.0], max_step: 0.01 };
     let mut solver = Solver::default();
     let mut motion = start.fixed_rows::<6>(0).into_owned();
     let mut time = 0.0;

@@ -18,3 +18,4 @@ pub mod fmi2;
 pub mod mechanism;
 pub mod models;
 pub mod scalar;
+pub mod svd;

@@ -50,7 +50,7 @@ DEFAULTS: dict[str, float | bool] = {
 
 
 def random_parameters(rng: np.random.Generator) -> dict[str, float | bool]:
-    """Every parameter between half and double its default; half of the sets without revolute motors."""
+    """Every parameter between half and double its default, the revolute motors unpowered in half of the sets."""
     drawn = {
         name: float(value * 2.0 ** rng.uniform(-1, 1))
         for name, value in DEFAULTS.items()
@@ -88,7 +88,7 @@ class Motors:
     @classmethod
     def of(cls, p: dict[str, float | bool]) -> "Motors":
         """Order: theta_1, d_1, theta_2, ... as the limbs' joints come in the chains."""
-        ratio = np.tile([p["gear_ratio"] if p["revolute_motors"] else 0.0, 2 * np.pi / p["screw_lead"]], 3)
+        ratio = np.tile([p["gear_ratio"], 2 * np.pi / p["screw_lead"]], 3)
         return cls(ratio * p["motor_kt"], ratio**2 * p["motor_jm"], ratio**2 * p["motor_bm"])
 
 
