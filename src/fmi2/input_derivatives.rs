@@ -24,7 +24,7 @@ pub struct InputDerivatives {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 enum Phase {
-    /// All zero.
+    /// The inputs are constant.
     None,
     /// Set for the step to come.
     Pending,
@@ -82,14 +82,10 @@ impl InputDerivatives {
 
     /// Takes note that a step was made.
     pub fn step_done(&mut self) {
-        match self.phase {
-            Phase::Pending => self.phase = Phase::Used,
-            Phase::Used => {
-                self.terms.fill([0.0; MAX_ORDER]);
-                self.phase = Phase::None;
-            }
-            Phase::None => {}
-        }
+        self.phase = match self.phase {
+            Phase::Pending => Phase::Used,
+            Phase::Used | Phase::None => Phase::None,
+        };
     }
 
     /// Deviation of `input` from its value at the origin, at time `t`.

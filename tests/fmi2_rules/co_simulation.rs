@@ -30,7 +30,10 @@ fn mass(u: f64) -> Host {
 
 #[test]
 fn a_step_size_must_be_positive_finite_and_not_endless() {
-    let host = Host::initialized(CoSimulation);
+    let host = Host::new(CoSimulation);
+    assert_eq!(host.setup(0.0, None), Status::Ok);
+    assert_eq!(call!(fmi2EnterInitializationMode(host.c)), Status::Ok);
+    assert_eq!(call!(fmi2ExitInitializationMode(host.c)), Status::Ok);
     let before = host.fingerprint();
     for size in [0.0, -0.01, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e308, 2.0 * MAX_STEP] {
         assert_eq!(host.step(0.0, size), Status::Error, "step {size}");
@@ -126,10 +129,11 @@ fn a_failed_step_leaves_model_and_values_as_they_were() {
     {
         let host = Host::initialized(CoSimulation);
         assert_eq!(host.step(0.0, 0.15), Status::Ok);
-        let before = host.fingerprint();
+        let before = (host.fingerprint(), output_derivative(&host, real::X, 1));
         host.trouble(kind);
         assert_eq!(host.step(0.15, 0.15), status);
-        assert_eq!(host.fingerprint(), before);
+        // the derivative is computed from the model, not read from the values
+        assert_eq!((host.fingerprint(), output_derivative(&host, real::X, 1)), before);
     }
 }
 
