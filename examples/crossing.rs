@@ -48,7 +48,7 @@ fn main() {
                     voltage = voltage.max(record.diagnostics.voltages.amax());
                     iterations += record.diagnostics.iterations;
                 });
-                let rms = (square / count as f64).sqrt();
+                let rms = (square / count).sqrt();
                 println!(
                     "  {name:10} {rho:4} {delta_hd:4} peak {:8.4} mm  rms {:8.4} mm  {voltage:5.1} V  it {:4.1} {}",
                     peak * 1e3,

@@ -103,8 +103,7 @@ fn causality_variability_and_initial_are_a_triple_of_section_2_2_7() {
 #[test]
 fn start_values_are_present_exactly_where_required() {
     for_each_variable(|_, v| {
-        let required =
-            v.causality == Causality::Input || matches!(v.initial, Some(Initial::Exact | Initial::Approx));
+        let required = v.causality == Causality::Input || matches!(v.initial, Some(Initial::Exact | Initial::Approx));
         assert_eq!(has_start(v), required, "{}", v.name);
     });
 }
@@ -164,7 +163,8 @@ fn the_unit_of_a_derivative_is_the_states_unit_by_second() {
             let Kind::Real { unit: state_unit, .. } = &variable(definition, state).kind else {
                 panic!("{state} is no Real")
             };
-            let [rate, state] = [unit, state_unit].map(|u| u.map_or(Exponents::default(), |u| Exponents::of(u).unwrap()));
+            let [rate, state] =
+                [unit, state_unit].map(|u| u.map_or(Exponents::default(), |u| Exponents::of(u).unwrap()));
             assert_eq!(rate, Exponents { s: state.s - 1, ..state }, "{}", v.name);
         }
     });
@@ -200,12 +200,8 @@ fn base_units_are_those_of_the_si() {
 fn outputs_are_exactly_the_variables_of_that_causality_in_order() {
     for definition in definitions() {
         let listed: Vec<_> = definition.outputs.iter().map(|u| u.variable.as_str()).collect();
-        let expected: Vec<_> = definition
-            .variables
-            .iter()
-            .filter(|v| v.causality == Causality::Output)
-            .map(|v| v.name.as_str())
-            .collect();
+        let expected: Vec<_> =
+            definition.variables.iter().filter(|v| v.causality == Causality::Output).map(|v| v.name.as_str()).collect();
         assert_eq!(listed, expected);
     }
 }
@@ -245,9 +241,7 @@ fn initial_unknowns_are_exactly_the_expected_set_ordered_by_index() {
                 let v = &definition.variables[i];
                 let computed = matches!(v.initial, Some(Initial::Approx | Initial::Calculated));
                 computed
-                    && (v.causality == Causality::Output
-                        || states.contains(&v.name)
-                        || derivatives.contains(&v.name))
+                    && (v.causality == Causality::Output || states.contains(&v.name) || derivatives.contains(&v.name))
             })
             .collect();
         assert_eq!(listed, expected);

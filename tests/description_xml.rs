@@ -82,8 +82,7 @@ fn the_derivative_attribute_is_the_states_index_counted_from_one() {
 fn dependencies_are_explicit_ordered_and_each_has_its_kind() {
     for description in ALL {
         let structure = element(description.xml, "ModelStructure");
-        let (dependencies, kinds) =
-            (attributes(structure, "dependencies"), attributes(structure, "dependenciesKind"));
+        let (dependencies, kinds) = (attributes(structure, "dependencies"), attributes(structure, "dependenciesKind"));
         assert_eq!(dependencies.len(), structure.matches("<Unknown ").count(), "never left out");
         assert_eq!(kinds.len(), dependencies.len());
         for (dependencies, kinds) in dependencies.iter().zip(kinds) {
@@ -125,9 +124,12 @@ fn both_interfaces_claim_what_works() {
             let text = &description.xml[description.xml.find(&format!("<{interface} ")).unwrap()..];
             let text = &text[..text.find("/>").unwrap()];
             assert_eq!(attributes(text, "modelIdentifier"), [description.model_identifier]);
-            for flag in
-                ["canGetAndSetFMUstate", "canSerializeFMUstate", "canNotUseMemoryManagementFunctions", "providesDirectionalDerivative"]
-            {
+            for flag in [
+                "canGetAndSetFMUstate",
+                "canSerializeFMUstate",
+                "canNotUseMemoryManagementFunctions",
+                "providesDirectionalDerivative",
+            ] {
                 assert_eq!(attributes(text, flag), ["true"], "{interface} {flag}");
             }
             assert_eq!(attributes(text, "canBeInstantiatedOnlyOncePerProcess"), ["false"]);
@@ -140,7 +142,9 @@ fn nothing_is_written_that_importers_stumble_over() {
     for description in ALL {
         let xml = description.xml;
         assert!(xml.starts_with("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription "));
-        for word in ["xmlns", "canHandleMultipleSetPerTimeInstant", "NaN", "\"inf\"", "\"-inf\"", "generationDateAndTime"] {
+        for word in
+            ["xmlns", "canHandleMultipleSetPerTimeInstant", "NaN", "\"inf\"", "\"-inf\"", "generationDateAndTime"]
+        {
             assert!(!xml.contains(word), "{word}");
         }
         for list in ["UnitDefinitions", "Outputs", "Derivatives", "InitialUnknowns"] {

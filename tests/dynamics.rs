@@ -20,7 +20,7 @@ fn model<T: Scalar>(revolute_motors: bool) -> PlantModel<T> {
 prop_compose! {
     /// A state within the limits, currents of up to 5 A.
     fn states()(
-        heave in 0.02..0.09_f64, tilt in 0.0..0.2_f64, direction in 0.0..6.28_f64,
+        heave in 0.02..0.09_f64, tilt in 0.0..0.2_f64, direction in 0.0..std::f64::consts::TAU,
         rates in prop::array::uniform3(-1.0..1.0_f64), currents in prop::array::uniform6(-5.0..5.0_f64),
     ) -> PlantState<f64> {
         let head = [heave, tilt * direction.cos(), tilt * direction.sin()];

@@ -8,17 +8,18 @@ use serde::{Deserialize, Serialize};
 use super::actuation::voltages;
 use super::mpso::{Bounds, Swarm};
 use super::parameters::Tuning;
+use super::preview::{pose_errors, stacked_currents};
 use super::{
     ControlError, ControllerParameters, Damping, Estimate, Estimator, ExternalReference, Fitness, ForceDistribution,
-    Measurement, Mode, Reference, ReferencePoint, Sensors, SingularBasis, Situation, VoltageCommand, lyapunov,
-    lyapunov_rate,
+    Measurement, Reference, ReferencePoint, Sensors, SingularBasis, Situation, VoltageCommand, lyapunov, lyapunov_rate,
 };
 use crate::dynamics::solver::{Settings, Solver};
 use crate::dynamics::{Inputs, NOMINAL, PlantModel, PlantState, STATES, derivative};
-use crate::mechanism::{Pose, rotation_vector};
+use crate::mechanism::Geometry;
+use crate::scalar::Scalar;
 
 /// The controller between ticks.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 #[serde(try_from = "Saved", into = "Saved")]
 pub struct Controller {
     parameters: ControllerParameters,
@@ -63,6 +64,21 @@ impl From<Controller> for Saved {
     }
 }
 
+impl Clone for Controller {
+    fn clone(&self) -> Self {
+        Self { swarm: self.swarm.clone(), memory: self.memory.clone(), ..*self }
+    }
+
+    /// Keeps the swarm, a mere workspace, if it fits: so a backup at every step allocates nothing.
+    fn clone_from(&mut self, source: &Self) {
+        if self.parameters == source.parameters {
+            self.memory.clone_from(&source.memory);
+        } else {
+            *self = source.clone();
+        }
+    }
+}
+
 /// The swarm's dimension depends on the motors: three motors have a force distribution to damp.
 #[derive(Debug, Clone)]
 enum Search {
@@ -72,30 +88,30 @@ enum Search {
 
 /// What a tick leaves for the outputs.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Diagnostics {
+pub struct Diagnostics<T = f64> {
     /// Voltages for leg and revolute motors, V.
-    pub voltages: Vector6<f64>,
+    pub voltages: Vector6<T>,
     /// A voltage is at its limit.
     pub saturated: bool,
     /// Damping in force.
-    pub damping: Damping<f64>,
+    pub damping: Damping<T>,
     /// rho_hd in force, 1/s.
-    pub rho_hd: f64,
+    pub rho_hd: T,
     /// Smallest singular value of J at the estimated pose.
-    pub sigma_min: f64,
+    pub sigma_min: T,
     /// L (5.2), m2/s2, and its rate, m2/s3.
-    pub lyapunov: f64,
-    pub lyapunov_rate: f64,
+    pub lyapunov: T,
+    pub lyapunov_rate: T,
     /// Estimated coordinates, m, rad, rad.
-    pub estimate: Vector3<f64>,
+    pub estimate: Vector3<T>,
     /// Reference coordinates, m, rad, rad.
-    pub reference: Vector3<f64>,
+    pub reference: Vector3<T>,
     /// Distance of P from its reference, m.
-    pub position_error: f64,
+    pub position_error: T,
     /// Angle between platform and its reference, rad.
-    pub rotation_error: f64,
+    pub rotation_error: T,
     /// Best fitness of the swarm, m2, and its iterations; 0 in modes without swarm.
-    pub fitness: f64,
+    pub fitness: T,
     pub iterations: usize,
 }
 
@@ -142,6 +158,27 @@ impl Controller {
         Ok(Self { parameters, model, reference, swarm, memory })
     }
 
+    /// What the sensors would read of `measured` at the next tick, and the state estimated from it
+    /// alone, in any number type: readings keep the derivatives of what they measure.
+    pub fn first_estimate<T: Scalar>(
+        &self,
+        geometry: &Geometry<T>,
+        measured: &Measurement<T>,
+        value: impl Fn(T) -> f64,
+    ) -> (Measurement<T>, Estimate<T>) {
+        let truth = measured.map(&value);
+        let reading = self.memory.sensors.clone().read(&truth);
+        let mut read = *measured;
+        for i in 0..3 {
+            read.lengths[i] += T::from(reading.lengths[i] - truth.lengths[i]);
+            read.angles[i] += T::from(reading.angles[i] - truth.angles[i]);
+        }
+        let estimator = &self.memory.estimator;
+        let waypoint = Vector3::from(self.parameters.waypoints[0]);
+        let near = estimator.fit(&self.model.geometry, &reading, &waypoint, false);
+        (read, estimator.fit(geometry, &read, &near.s.map(T::from), true))
+    }
+
     /// Parameters in force.
     pub fn parameters(&self) -> &ControllerParameters {
         &self.parameters
@@ -183,7 +220,7 @@ impl Controller {
             let (lengths, angles) = (measured.lengths.into(), measured.angles.into());
             return Err(ControlError::NoPose { lengths, angles });
         }
-        let currents = stack(&measured.leg_currents, &measured.revolute_currents);
+        let currents = stacked_currents(&measured);
         let (ahead, acting, currents) = if self.parameters.computation_delay && delayed {
             let (acting, currents) = self.predict(&estimate, &currents)?;
             (self.parameters.sample_time, acting, currents)
@@ -195,11 +232,9 @@ impl Controller {
         let basis = SingularBasis::new(&situation);
         let distribution = ForceDistribution::new(&self.model, &situation);
         let sample_time = self.parameters.sample_time;
-        let (damping, fitness, iterations) = match tuning.mode {
-            Mode::Rac => (Damping { rho: 0.0, delta_hd: 0.0, lambda_f: 0.0 }, 0.0, 0),
-            Mode::Drac => (Damping { delta_hd: 0.0, ..tuning.fixed }, 0.0, 0),
-            Mode::Hdrac => (tuning.fixed, 0.0, 0),
-            Mode::HdracMpso => {
+        let (damping, fitness, iterations) = match tuning.mode.fixed_damping(&tuning.fixed) {
+            Some(fixed) => (fixed, 0.0, 0),
+            None => {
                 let horizon = ahead + tuning.horizon;
                 let target = self.reference_at(external, t + horizon, horizon);
                 let fitness =
@@ -218,7 +253,7 @@ impl Controller {
         }
         self.memory.voltages = voltages.into();
         let now = self.reference_at(external, t, 0.0);
-        let (position_error, rotation_error) = self.pose_errors(&estimate.s, &now.position);
+        let (position_error, rotation_error) = pose_errors(&self.model, &estimate.s, &now.position);
         Ok(Diagnostics {
             voltages,
             saturated,
@@ -290,18 +325,7 @@ impl Controller {
         *particle = Some(position);
         (damping(position), value, iterations)
     }
-
-    /// Distance of P (m) and angle (rad) between two poses.
-    fn pose_errors(&self, s: &Vector3<f64>, reference: &Vector3<f64>) -> (f64, f64) {
-        let (pose, target) = (Pose::new(&self.model.geometry, s), Pose::new(&self.model.geometry, reference));
-        let rotation = target.rotation * pose.rotation.transpose();
-        ((target.position - pose.position).norm(), rotation_vector(&rotation).norm())
-    }
 }
 
 /// No mechanism of sensible size is as high, in m, or tilts as far, in rad, as this times its base.
 const LARGEST_POSE: f64 = 1e3;
-
-fn stack(leg: &Vector3<f64>, revolute: &Vector3<f64>) -> Vector6<f64> {
-    Vector6::new(leg.x, leg.y, leg.z, revolute.x, revolute.y, revolute.z)
-}

@@ -18,6 +18,18 @@ pub enum Mode {
     HdracMpso,
 }
 
+impl Mode {
+    /// The damping of a mode that does not search for it, from the `fixed` factors.
+    pub fn fixed_damping<T: Scalar>(self, fixed: &Damping<T>) -> Option<Damping<T>> {
+        match self {
+            Self::Rac => Some(Damping { rho: T::zero(), delta_hd: T::zero(), lambda_f: T::zero() }),
+            Self::Drac => Some(Damping { delta_hd: T::zero(), ..*fixed }),
+            Self::Hdrac => Some(*fixed),
+            Self::HdracMpso => None,
+        }
+    }
+}
+
 /// Damping factors.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Damping<T> {

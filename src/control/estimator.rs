@@ -3,6 +3,8 @@
 //! Lengths alone do not tell the pose at a direct singularity; lengths and angles together do
 //! everywhere. So the pose is a weighted least-squares fit of all six, and its rate likewise.
 
+use std::cmp::Ordering;
+
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
@@ -96,7 +98,7 @@ impl Estimator {
             limbs = Limb::all(geometry, &Pose::new(geometry, &s));
             normal = normal_matrix(&limbs, length_weight, angle_weight);
             // (a NaN ends it too)
-            if !exact && !(step.amax() >= constant(CONVERGED)) {
+            if !exact && step.amax().partial_cmp(&constant(CONVERGED)) != Some(Ordering::Greater) {
                 break;
             }
         }

@@ -10,7 +10,8 @@ use nalgebra::{Matrix3, Matrix3x6, Matrix6x3, Vector3, Vector6};
 use super::actuation::{back_emf, damp};
 use super::parameters::Tuning;
 use super::{Damping, ForceDistribution, ReferencePoint, SingularBasis, Situation};
-use crate::dynamics::PlantModel;
+use crate::dynamics::{PlantModel, solve_positive_definite};
+use crate::scalar::{Scalar, constant};
 
 /// Objective of the swarm at one tick.
 #[derive(Debug, Clone, Copy)]
@@ -21,15 +22,80 @@ pub struct Fitness<'a> {
     /// Lowest and highest current that the voltage limit can keep up, A.
     lowest: Vector6<f64>,
     highest: Vector6<f64>,
-    /// Error at the horizon without acceleration, scaled to m, and its rate's, m/s.
-    error: Vector3<f64>,
-    rate_error: Vector3<f64>,
+    outlook: Outlook<f64>,
     /// (1, r_b, r_b)
     scale: Vector3<f64>,
-    horizon: f64,
-    half_square: f64,
-    weight_velocity: f64,
-    weight_acceleration: f64,
+}
+
+/// Where the platform would be at the horizon without acceleration, against the reference there;
+/// everything scaled to m.
+#[derive(Debug, Clone, Copy)]
+struct Outlook<T> {
+    /// m
+    error: Vector3<T>,
+    /// m/s
+    rate_error: Vector3<T>,
+    /// s
+    horizon: T,
+    /// s2
+    weight_velocity: T,
+    /// s4
+    weight_acceleration: T,
+}
+
+impl<T: Scalar> Outlook<T> {
+    fn new(situation: &Situation<T>, ahead: &ReferencePoint<T>, tuning: &Tuning<T>, scale: &Vector3<T>) -> Self {
+        let Tuning { horizon, weight_velocity, weight_acceleration, .. } = *tuning;
+        Self {
+            error: (ahead.position - situation.s - situation.s_dot * horizon).component_mul(scale),
+            rate_error: (ahead.rate - situation.s_dot).component_mul(scale),
+            horizon,
+            weight_velocity,
+            weight_acceleration,
+        }
+    }
+
+    /// The fitness, m2, of a scaled `acceleration` (m/s2) held up to the horizon.
+    #[inline]
+    fn weigh(&self, acceleration: &Vector3<T>) -> T {
+        let error = self.error - acceleration * (self.horizon * self.horizon * constant(0.5));
+        let rate_error = self.rate_error - acceleration * self.horizon;
+        error.norm_squared()
+            + self.weight_velocity * rate_error.norm_squared()
+            + self.weight_acceleration * acceleration.norm_squared()
+    }
+}
+
+/// (1, r_b, r_b): coordinates to m.
+fn coordinate_scale<T: Scalar>(model: &PlantModel<T>) -> Vector3<T> {
+    let r_b = model.geometry.joint_radius;
+    Vector3::new(T::one(), r_b, r_b)
+}
+
+/// Lowest and highest currents of leg and revolute motors that the voltage limit can keep up, A.
+fn current_limits<T: Scalar>(model: &PlantModel<T>, situation: &Situation<T>) -> (Vector6<T>, Vector6<T>) {
+    let emf = back_emf(&model.motors, situation);
+    let (limit, resistance) = (model.motors.v_max, model.motors.resistance);
+    (emf.map(|e| (-limit - e) / resistance), emf.map(|e| (limit - e) / resistance))
+}
+
+/// The fitness (m2) of currents (A), written out: what [`Fitness::evaluate`] computes for many
+/// dampings at the price of a few operations each. Can be differentiated through.
+pub fn fitness_of_currents<T: Scalar>(
+    model: &PlantModel<T>,
+    situation: &Situation<T>,
+    currents: &Vector6<T>,
+    ahead: &ReferencePoint<T>,
+    tuning: &Tuning<T>,
+) -> T {
+    let (lowest, highest) = current_limits(model, situation);
+    let kept = Vector6::from_fn(|i, _| currents[i].max(lowest[i]).min(highest[i]));
+    let force = situation.leg_map * kept.fixed_rows::<3>(0) + situation.revolute_map * kept.fixed_rows::<3>(3)
+        - situation.dynamics.bias
+        - situation.friction;
+    let acceleration = solve_positive_definite(&situation.dynamics.mass_matrix, &force);
+    let scale = coordinate_scale(model);
+    Outlook::new(situation, ahead, tuning, &scale).weigh(&acceleration.component_mul(&scale))
 }
 
 /// From the wanted s_ddot to the currents and back to the s_ddot that they cause.
@@ -65,8 +131,7 @@ impl<'a> Fitness<'a> {
         tuning: &Tuning,
         sample_time: f64,
     ) -> Self {
-        let r_b = model.geometry.joint_radius;
-        let scale = Vector3::new(1.0, r_b, r_b);
+        let scale = coordinate_scale(model);
         let mass = &situation.dynamics.mass_matrix;
         let inverse_mass = mass.try_inverse().unwrap_or_else(Matrix3::zeros);
         let load = situation.dynamics.bias + situation.friction;
@@ -87,23 +152,9 @@ impl<'a> Fitness<'a> {
                 free,
             },
         };
-        let emf = back_emf(&model.motors, situation);
-        let (limit, resistance) = (model.motors.v_max, model.motors.resistance);
-        let horizon = tuning.horizon;
-        Self {
-            basis,
-            actuators,
-            sample_time,
-            lowest: emf.map(|e| (-limit - e) / resistance),
-            highest: emf.map(|e| (limit - e) / resistance),
-            error: (ahead.position - situation.s - situation.s_dot * horizon).component_mul(&scale),
-            rate_error: (ahead.rate - situation.s_dot).component_mul(&scale),
-            scale,
-            horizon,
-            half_square: 0.5 * horizon * horizon,
-            weight_velocity: tuning.weight_velocity,
-            weight_acceleration: tuning.weight_acceleration,
-        }
+        let (lowest, highest) = current_limits(model, situation);
+        let outlook = Outlook::new(situation, ahead, tuning, &scale);
+        Self { basis, actuators, sample_time, lowest, highest, outlook, scale }
     }
 
     /// The fitness of `damping`, m2; smaller is better.
@@ -112,11 +163,7 @@ impl<'a> Fitness<'a> {
         let rho_hd = damping.rho_hd(self.basis.sigma_min, self.sample_time);
         let wanted = self.basis.coordinate_acceleration(damping.rho, rho_hd);
         let acceleration = self.respond(&wanted, damping.lambda_f).component_mul(&self.scale);
-        let error = self.error - acceleration * self.half_square;
-        let rate_error = self.rate_error - acceleration * self.horizon;
-        error.norm_squared()
-            + self.weight_velocity * rate_error.norm_squared()
-            + self.weight_acceleration * acceleration.norm_squared()
+        self.outlook.weigh(&acceleration)
     }
 
     /// s_ddot that the limited motors cause when `wanted` is asked for.

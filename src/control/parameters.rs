@@ -51,17 +51,17 @@ pub struct ControllerParameters {
 
 /// What may change between ticks.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Tuning {
+pub struct Tuning<T = f64> {
     pub mode: Mode,
-    pub gains: Gains,
+    pub gains: Gains<T>,
     /// Factors of the modes with fixed damping.
-    pub fixed: Damping<f64>,
+    pub fixed: Damping<T>,
     /// Prediction horizon of the fitness, s.
-    pub horizon: f64,
+    pub horizon: T,
     /// Fitness weight of the velocity error, s2.
-    pub weight_velocity: f64,
+    pub weight_velocity: T,
     /// Fitness weight of the acceleration, s4.
-    pub weight_acceleration: f64,
+    pub weight_acceleration: T,
 }
 
 /// Why the controller cannot start or go on.

@@ -6,6 +6,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use serde::{Deserialize, Serialize};
 
 use crate::defaults as d;
+use crate::scalar::Scalar;
 
 /// What the controller measures at a tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,6 +22,21 @@ pub struct Measurement<T> {
     pub revolute_currents: Vector3<T>,
     /// Acceleration of P, base frame, m/s2.
     pub acceleration: Vector3<T>,
+}
+
+impl<T: Scalar> Measurement<T> {
+    /// With every number replaced.
+    pub fn map<U: Scalar>(&self, f: impl Fn(T) -> U) -> Measurement<U> {
+        Measurement {
+            lengths: self.lengths.map(&f),
+            length_rates: self.length_rates.map(&f),
+            angles: self.angles.map(&f),
+            angle_rates: self.angle_rates.map(&f),
+            leg_currents: self.leg_currents.map(&f),
+            revolute_currents: self.revolute_currents.map(&f),
+            acceleration: self.acceleration.map(&f),
+        }
+    }
 }
 
 /// Figures of the position sensors (Table 1), all multiplied by `scale`.

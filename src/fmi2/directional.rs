@@ -4,7 +4,7 @@ use super::call_table::Mode;
 use super::error::{CallError, CallResult};
 use super::instance::{Instance, Snapshot};
 use super::layout::Entry;
-use super::model::Model;
+use super::model::{Direction, Model};
 use super::types::{Interface, ValueReference};
 use super::variables::slot;
 
@@ -45,10 +45,11 @@ impl<M: Model> Instance<M> {
         }
         self.refresh().map_err(CallError::without_discard)?;
         let initialization = self.now.mode == Mode::Initialization;
-        let Snapshot { model, values, time, .. } = &mut self.now;
+        let Snapshot { model, values, .. } = &mut self.now;
         let (unknowns, knowns, seed) = &self.scratch;
+        let direction = Direction { initialization, knowns, seed };
         model
-            .directional_derivative(values, *time, initialization, unknowns, knowns, seed, out)
+            .directional_derivative(values, &direction, unknowns, out)
             .map_err(|error| CallError::from(error).without_discard())?;
         if out.iter().all(|x| x.is_finite()) {
             Ok(())

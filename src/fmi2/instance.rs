@@ -195,9 +195,12 @@ impl<M: Model> Snapshot<M> {
             && self.values.reals.len() == layout.reals.entries.len()
             && self.values.integers.len() == layout.integers.entries.len()
             && self.values.booleans.len() == layout.booleans.entries.len()
-            && self.values.reals.iter().zip(&layout.reals.entries).all(|(x, entry)| {
-                x.is_finite() || (entry.calculated && (self.stale || self.mode == Mode::Error))
-            })
+            && self
+                .values
+                .reals
+                .iter()
+                .zip(&layout.reals.entries)
+                .all(|(x, entry)| x.is_finite() || (entry.calculated && (self.stale || self.mode == Mode::Error)))
             && self.model.continuous_states().len() == layout.derivatives.len()
             && self.model.continuous_states().iter().all(|x| x.is_finite())
             && self.input_derivatives.len() == layout.continuous_inputs

@@ -37,5 +37,5 @@ pub use input_derivatives::MAX_ORDER as MAX_INPUT_DERIVATIVE_ORDER;
 pub use instance::Instance;
 pub use layout::Layout;
 pub use lifecycle::MAX_TIME;
-pub use model::{EventUpdate, Experiment, Log, Model, ModelError, ModelResult, StepInputs};
+pub use model::{Direction, EventUpdate, Experiment, Log, Model, ModelError, ModelResult, StepInputs};
 pub use values::Values;

@@ -48,6 +48,24 @@ pub trait StepInputs {
     fn constant(&self) -> bool;
 }
 
+/// Along what a directional derivative is wanted.
+#[derive(Debug, Clone, Copy)]
+pub struct Direction<'a> {
+    /// The structure of Initialization Mode counts, in which parameters are knowns.
+    pub initialization: bool,
+    /// Slots of the knowns (Reals).
+    pub knowns: &'a [usize],
+    /// The seed, one number a known.
+    pub seed: &'a [f64],
+}
+
+impl Direction<'_> {
+    /// How far the direction leads along the Real in `slot`.
+    pub fn along(&self, slot: usize) -> f64 {
+        self.knowns.iter().zip(self.seed).filter(|(known, _)| **known == slot).map(|(_, seed)| seed).sum()
+    }
+}
+
 /// Outcome of `fmi2NewDiscreteStates`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct EventUpdate {
@@ -111,17 +129,13 @@ pub trait Model: Clone + Serialize + DeserializeOwned + Send + 'static {
     fn new_discrete_states(&mut self, values: &mut Values, time: f64, log: &mut dyn Log) -> ModelResult<EventUpdate>;
 
     /// Directional derivative: for each slot of `unknowns` (Real outputs, locals, derivatives) the
-    /// derivative along `seed` over the Real slots of `knowns`. `initialization` tells which of the
-    /// two structures counts. The layer has checked that knowns and unknowns are of the right sort.
-    #[allow(clippy::too_many_arguments)] // what fmi2GetDirectionalDerivative says, and where the model stands
+    /// derivative along `direction`. The layer has checked that knowns and unknowns are of the
+    /// right sort.
     fn directional_derivative(
         &mut self,
         values: &Values,
-        time: f64,
-        initialization: bool,
+        direction: &Direction,
         unknowns: &[usize],
-        knowns: &[usize],
-        seed: &[f64],
         result: &mut [f64],
     ) -> ModelResult;
 

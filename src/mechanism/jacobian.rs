@@ -4,7 +4,7 @@
 
 use nalgebra::{Matrix6, Vector6};
 
-use super::{Geometry, Limb, LimbMotion, PoseMotion};
+use super::{Geometry, Limb, LimbMotion, PoseMotion, SingularValues};
 use crate::scalar::Scalar;
 
 /// J and J_dot q_dot, rotations scaled by the characteristic length r_b.
@@ -49,10 +49,10 @@ impl<T: Scalar> OverallJacobian<T> {
     }
 }
 
-impl OverallJacobian<f64> {
+impl<T: SingularValues> OverallJacobian<T> {
     /// Smallest singular value, dimensionless.
-    pub fn sigma_min(&self) -> f64 {
-        self.matrix.singular_values_unordered().min()
+    pub fn sigma_min(&self) -> T {
+        T::sigma_min(&self.matrix)
     }
 }
 

@@ -12,6 +12,7 @@ mod jacobian;
 mod limb;
 mod pose;
 mod rotation;
+mod singular_value;
 mod singularity;
 
 pub use geometry::Geometry;
@@ -19,6 +20,7 @@ pub use jacobian::{OverallJacobian, scale_twist};
 pub use limb::{Limb, LimbMotion};
 pub use pose::{Pose, PoseMotion};
 pub use rotation::{ExponentialCoefficients, rotation_vector};
+pub use singular_value::SingularValues;
 pub use singularity::{
     NearestSingularity, RealRoots, SingularityCubic, matrix_a, matrix_b, nearest_singularity, normalized_det_a,
     singular_heights,

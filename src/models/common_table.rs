@@ -58,8 +58,12 @@ pub fn mechanism_parameters() -> Vec<Variable> {
         real(1018, "motor_ra", Some("Ohm"), d::MOTOR_RA, POSITIVE, INF, "Armature resistance"),
         real(1019, "gravity", Some("m/s2"), d::GRAVITY, -INF, INF, "Gravitational acceleration along -z"),
         real(1020, "v_max", Some("V"), d::V_MAX, POSITIVE, INF, "Terminal voltage limit, both signs"),
-        Variable::boolean("revolute_motors", 1000, "Revolute motors powered too (six motors); if not, their circuits are open and their rotors turn along")
-            .parameter()
-            .start_boolean(true),
+        Variable::boolean(
+            "revolute_motors",
+            1000,
+            "Revolute motors powered too (six motors); if not, their circuits are open and their rotors turn along",
+        )
+        .parameter()
+        .start_boolean(true),
     ]
 }

@@ -2,8 +2,6 @@
 
 use std::collections::HashMap;
 
-use nalgebra::Vector3;
-
 use crate::description::{Causality, Definition, VariableType};
 use crate::fmi2::Values;
 
@@ -37,10 +35,4 @@ pub fn real_parameters(definition: &Definition) -> HashMap<String, usize> {
 
 fn find(definition: &Definition, variable_type: VariableType, name: &str) -> usize {
     Values::slot(definition, variable_type, name).unwrap_or_else(|| panic!("no variable {name}"))
-}
-
-/// Three consecutive Reals from `slot` on.
-#[inline]
-pub fn vector(values: &Values, slot: usize) -> Vector3<f64> {
-    Vector3::new(values.reals[slot], values.reals[slot + 1], values.reals[slot + 2])
 }

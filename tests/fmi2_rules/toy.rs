@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 use rps3::description::{
     Capabilities, Causality, DefaultExperiment, Definition, Initial, Unknown, Variability, Variable,
 };
-use rps3::fmi2::{EventUpdate, Experiment, Log, Model, ModelError, ModelResult, StepInputs, Values};
+use rps3::fmi2::{Direction, EventUpdate, Experiment, Log, Model, ModelError, ModelResult, StepInputs, Values};
 use serde::{Deserialize, Serialize};
 
 /// Sampling period, seconds.
@@ -275,16 +275,13 @@ impl Model for Oscillator {
     fn directional_derivative(
         &mut self,
         values: &Values,
-        _time: f64,
-        initialization: bool,
+        direction: &Direction,
         unknowns: &[usize],
-        knowns: &[usize],
-        seed: &[f64],
         result: &mut [f64],
     ) -> ModelResult {
-        let along = |slot: usize| -> f64 { knowns.iter().zip(seed).filter(|(k, _)| **k == slot).map(|(_, s)| s).sum() };
-        let dx = along(if initialization { slot::X_START } else { slot::X });
-        let dv = if initialization { 0.0 } else { along(slot::V) };
+        let along = |slot: usize| direction.along(slot);
+        let dx = along(if direction.initialization { slot::X_START } else { slot::X });
+        let dv = if direction.initialization { 0.0 } else { along(slot::V) };
         let du = along(slot::U);
         let (dk, dc) = (along(slot::K), along(slot::C));
         let [x, v] = self.states;

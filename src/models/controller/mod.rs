@@ -6,20 +6,22 @@ use std::collections::HashMap;
 use std::sync::OnceLock;
 
 use nalgebra::Vector3;
+use num_dual::Dual64;
 use serde::{Deserialize, Serialize};
 
 use super::{descriptions, slots};
 use crate::control::mpso::{Selection, Settings};
 use crate::control::{
-    Controller as Core, ControllerParameters, Damping, Diagnostics, Gains, Measurement, Mode, Profile, ReferencePoint,
-    SensorParameters, SwarmParameters, Tuning,
+    Controller as Core, ControllerParameters, Damping, Diagnostics, ExternalReference, Gains, Measurement, Mode,
+    Profile, Reference, ReferencePoint, SensorParameters, Start, SwarmParameters, Tuning, preview,
 };
 use crate::description::Definition;
-use crate::dynamics::MechanismParameters;
-use crate::fmi2::{EventUpdate, Experiment, Log, Model, ModelError, ModelResult, StepInputs, Values};
+use crate::dynamics::{MechanismParameters, PlantModel};
+use crate::fmi2::{Direction, EventUpdate, Experiment, Log, Model, ModelError, ModelResult, StepInputs, Values};
+use crate::scalar::Scalar;
 
 /// The controller and its clock.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 pub struct Controller {
     /// `None` until the first initialization.
     core: Option<Core>,
@@ -104,12 +106,12 @@ fn parameters(values: &Values) -> ControllerParameters {
     let integer = |name: &str| values.integers[slots.integers[name]];
     // the table's range keeps counts positive
     let count = |name: &str| usize::try_from(integer(name)).unwrap_or(0);
-    let waypoint = |point: &str| ["heave", "tilt_x", "tilt_y"].map(|name| real(&format!("{point}_{name}")));
+    let waypoint = |point: &str| COORDINATES.map(|name| real(&format!("{point}_{name}")));
     ControllerParameters {
         mechanism: MechanismParameters::by_name(real, values.booleans[slots.revolute_motors]),
         sample_time: real("sample_time"),
         computation_delay: integer("computation_delay") == 1,
-        waypoints: ["start", "via", "end"].map(waypoint),
+        waypoints: POINTS.map(waypoint),
         move_time: real("move_time"),
         profile: if integer("profile") == 1 { Profile::ConstantSpeed } else { Profile::Quintic },
         external_reference: integer("reference_mode") == 2,
@@ -143,10 +145,9 @@ fn parameters(values: &Values) -> ControllerParameters {
     }
 }
 
-/// What may change between ticks.
-fn tuning(values: &Values) -> Tuning {
+/// What may change between ticks, by a function from the slot.
+fn tuning_from<T: Scalar>(values: &Values, real: impl Fn(usize) -> T) -> Tuning<T> {
     let slots = &table().1.tuning;
-    let real = |slot: usize| values.reals[slot];
     Tuning {
         mode: match values.integers[slots.mode] {
             1 => Mode::Rac,
@@ -166,9 +167,14 @@ fn tuning(values: &Values) -> Tuning {
     }
 }
 
-/// Measurements and external reference by a function from the place among the inputs.
-fn inputs_from(at: impl Fn(usize) -> f64) -> (Measurement<f64>, ReferencePoint<f64>) {
-    let vector = |k: usize| Vector3::new(at(3 * k), at(3 * k + 1), at(3 * k + 2));
+fn tuning(values: &Values) -> Tuning {
+    tuning_from(values, |slot| values.reals[slot])
+}
+
+/// Measurements and external reference by a function from the slot.
+fn inputs_from<T: Scalar>(at: impl Fn(usize) -> T) -> (Measurement<T>, ReferencePoint<T>) {
+    let first = table().1.inputs;
+    let vector = |k: usize| Vector3::new(at(first + 3 * k), at(first + 3 * k + 1), at(first + 3 * k + 2));
     let measurement = Measurement {
         lengths: vector(0),
         length_rates: vector(1),
@@ -181,11 +187,11 @@ fn inputs_from(at: impl Fn(usize) -> f64) -> (Measurement<f64>, ReferencePoint<f
     (measurement, ReferencePoint { position: vector(7), rate: vector(8), acceleration: vector(9) })
 }
 
-fn write(values: &mut Values, d: &Diagnostics) {
-    let slots = &table().1;
+/// The Real outputs in the table's order, in consecutive slots.
+fn real_outputs<T: Scalar>(d: &Diagnostics<T>) -> [T; 22] {
     let v = &d.voltages;
     let (e, r) = (&d.estimate, &d.reference);
-    let outputs = [
+    [
         v[0],
         v[1],
         v[2],
@@ -208,7 +214,12 @@ fn write(values: &mut Values, d: &Diagnostics) {
         d.position_error,
         d.rotation_error,
         d.fitness,
-    ];
+    ]
+}
+
+fn write(values: &mut Values, d: &Diagnostics) {
+    let slots = &table().1;
+    let outputs = real_outputs(d);
     values.reals[slots.outputs..slots.outputs + outputs.len()].copy_from_slice(&outputs);
     values.integers[slots.iterations] = i32::try_from(d.iterations).unwrap_or(i32::MAX);
     values.booleans[slots.saturated] = d.saturated;
@@ -221,18 +232,62 @@ impl Controller {
         self.start_time + self.tick as f64 * self.sample_time
     }
 
-    /// Makes the due tick with the inputs that `at` tells.
-    fn make_tick(&mut self, values: &mut Values, at: impl Fn(usize) -> f64) -> ModelResult {
-        let first = table().1.inputs;
-        let (measured, external) = inputs_from(|k| at(first + k));
-        let core = self.core.as_mut().ok_or_else(|| ModelError::Error("not initialized".into()))?;
+    /// Makes the due tick with these inputs.
+    fn make_tick(&mut self, values: &mut Values, inputs: (Measurement<f64>, ReferencePoint<f64>)) -> ModelResult {
+        let core = self.core.as_mut().ok_or_else(not_initialized)?;
         let t = self.tick as f64 * self.sample_time;
         let diagnostics = core
-            .tick(t, &measured, &external, &tuning(values), true)
+            .tick(t, &inputs.0, &inputs.1, &tuning(values), true)
             .map_err(|error| ModelError::Discard(error.to_string()))?;
         write(values, &diagnostics);
         self.tick += 1;
         Ok(())
+    }
+
+    /// The outputs during initialization, those of the first tick, in dual numbers.
+    fn preview(&self, values: &Values, dual: impl Fn(usize) -> Dual64) -> ModelResult<Diagnostics<Dual64>> {
+        let slots = &table().1;
+        let core = self.core.as_ref().ok_or_else(not_initialized)?;
+        let parameter = |name: &str| dual(slots.reals[name]);
+        let ControllerParameters { profile, external_reference, mechanism, .. } = *core.parameters();
+        let model = PlantModel::without_stops(&MechanismParameters::by_name(parameter, mechanism.revolute_motors));
+        let (truth, external) = inputs_from(&dual);
+        let (measured, estimate) = core.first_estimate(&model.geometry, &truth, |x| x.re);
+        let tuning = tuning_from(values, &dual);
+        let (reference, ahead) = if external_reference {
+            (external, ExternalReference(external).ahead(tuning.horizon))
+        } else {
+            let waypoints =
+                POINTS.map(|point| Vector3::from(COORDINATES.map(|name| parameter(&format!("{point}_{name}")))));
+            let internal = Reference::new(waypoints, parameter("move_time"), profile, model.geometry.joint_radius);
+            (internal.at(Dual64::from(0.0)), internal.at(tuning.horizon))
+        };
+        let start = Start { measured, estimate, reference, ahead, sample_time: parameter("sample_time") };
+        let found = |k: usize| Dual64::from(values.reals[slots.outputs + k]);
+        let found = Damping { rho: found(RHO), delta_hd: found(RHO + 2), lambda_f: found(RHO + 3) };
+        preview(&model, &start, &tuning, &found)
+            .ok_or_else(|| ModelError::Discard("J is singular: undamped outputs have no derivative here".into()))
+    }
+}
+
+/// Place of rho among the Real outputs; rho_hd, delta_hd and lambda_f follow.
+const RHO: usize = 6;
+const POINTS: [&str; 3] = ["start", "via", "end"];
+const COORDINATES: [&str; 3] = ["heave", "tilt_x", "tilt_y"];
+
+fn not_initialized() -> ModelError {
+    ModelError::Error("not initialized".into())
+}
+
+/// Written out, since the derived `clone_from` would allocate at every step's backup.
+impl Clone for Controller {
+    fn clone(&self) -> Self {
+        Self { core: self.core.clone(), ..*self }
+    }
+
+    fn clone_from(&mut self, source: &Self) {
+        self.core.clone_from(&source.core);
+        (self.start_time, self.sample_time, self.tick) = (source.start_time, source.sample_time, source.tick);
     }
 }
 
@@ -261,8 +316,7 @@ impl Model for Controller {
         let mut core = Core::new(parameters).map_err(refuse)?;
         // Outputs during initialization are those of the first tick, made on a copy: the tick itself
         // belongs to the first step or event, and must not find used random numbers.
-        let first = table().1.inputs;
-        let (measured, external) = inputs_from(|k| values.reals[first + k]);
+        let (measured, external) = inputs_from(|slot| values.reals[slot]);
         let mut preview = core.clone();
         let diagnostics = preview.tick(0.0, &measured, &external, &tuning(values), false).map_err(refuse)?;
         core.assume_voltages(&diagnostics.voltages);
@@ -290,7 +344,7 @@ impl Model for Controller {
         // A tick at `to` belongs to the next step: the master has yet to set the inputs for it.
         while self.due() < to - DUE * self.sample_time {
             let t = self.due().max(from);
-            self.make_tick(values, |slot| inputs.at(slot, t))?;
+            self.make_tick(values, inputs_from(|slot| inputs.at(slot, t)))?;
         }
         Ok(())
     }
@@ -307,24 +361,31 @@ impl Model for Controller {
 
     fn new_discrete_states(&mut self, values: &mut Values, time: f64, _log: &mut dyn Log) -> ModelResult<EventUpdate> {
         while self.due() <= time + DUE * self.sample_time {
-            let inputs = values.reals.clone();
-            self.make_tick(values, |slot| inputs[slot])?;
+            let inputs = inputs_from(|slot| values.reals[slot]);
+            self.make_tick(values, inputs)?;
         }
         Ok(EventUpdate { states_changed: false, next_event_time: Some(self.due()) })
     }
 
     fn directional_derivative(
         &mut self,
-        _values: &Values,
-        _time: f64,
-        _initialization: bool,
-        _unknowns: &[usize],
-        _knowns: &[usize],
-        _seed: &[f64],
+        values: &Values,
+        direction: &Direction,
+        unknowns: &[usize],
         result: &mut [f64],
     ) -> ModelResult {
-        // between ticks the outputs are held
-        result.fill(0.0);
+        if !direction.initialization {
+            // between ticks the outputs are held
+            result.fill(0.0);
+            return Ok(());
+        }
+        let dual = |slot: usize| Dual64::new(values.reals[slot], direction.along(slot));
+        let outputs = real_outputs(&self.preview(values, dual)?);
+        let first = table().1.outputs;
+        for (slot, value) in unknowns.iter().zip(result) {
+            let output = slot.checked_sub(first).and_then(|place| outputs.get(place));
+            *value = output.ok_or_else(|| ModelError::Error("not a Real output".into()))?.eps;
+        }
         Ok(())
     }
 

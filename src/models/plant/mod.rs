@@ -15,7 +15,7 @@ use super::{descriptions, slots};
 use crate::description::Definition;
 use crate::dynamics::solver::{Settings, Solver};
 use crate::dynamics::{Inputs, NOMINAL, PlantModel, PlantParameters, PlantState, STATES, derivative, settled_currents};
-use crate::fmi2::{EventUpdate, Experiment, Log, Model, ModelError, ModelResult, StepInputs, Values};
+use crate::fmi2::{Direction, EventUpdate, Experiment, Log, Model, ModelError, ModelResult, StepInputs, Values};
 use crate::mechanism::{Limb, Pose};
 use crate::scalar::Scalar;
 
@@ -283,26 +283,21 @@ impl Model for Plant {
     fn directional_derivative(
         &mut self,
         values: &Values,
-        _time: f64,
-        initialization: bool,
+        direction: &Direction,
         unknowns: &[usize],
-        knowns: &[usize],
-        seed: &[f64],
         result: &mut [f64],
     ) -> ModelResult {
         let slots = &table().1;
-        let direction =
-            |slot: usize| -> f64 { knowns.iter().zip(seed).filter(|(known, _)| **known == slot).map(|(_, s)| s).sum() };
-        let dual = |slot: usize| Dual64::new(values.reals[slot], direction(slot));
+        let dual = |slot: usize| Dual64::new(values.reals[slot], direction.along(slot));
         let u = inputs_from(|k| dual(slots.inputs + k));
-        let calculated = if initialization {
+        let calculated = if direction.initialization {
             let parameters = parameters_from(values, dual);
             let model = PlantModel::new(&parameters);
             let (x, _) = Self::start(&model, &parameters, &u);
             calculate(&model, &x, &u)
         } else {
             let model = PlantModel::new(&self.parameters.map(Dual64::from));
-            let x = PlantState::from_fn(|i, _| Dual64::new(self.x[i], direction(slots.calculated + i)));
+            let x = PlantState::from_fn(|i, _| Dual64::new(self.x[i], direction.along(slots.calculated + i)));
             calculate(&model, &x, &u)
         };
         pick(&calculated, unknowns, result)

@@ -1,10 +1,9 @@
 //! All calculated variables of the plant at a state, generic for exact derivatives.
 
-use nalgebra::{Matrix6, SVector};
-use num_dual::Dual64;
+use nalgebra::SVector;
 
 use crate::dynamics::{Inputs, PlantModel, PlantState, STATES, electric_power, energy, evaluate, reactions};
-use crate::mechanism::{OverallJacobian, normalized_det_a};
+use crate::mechanism::{OverallJacobian, SingularValues, normalized_det_a};
 use crate::scalar::Scalar;
 
 /// States, other outputs, and the derivatives that are no outputs, in the table's order: it puts
@@ -13,31 +12,6 @@ pub const CALCULATED: usize = STATES + 41 + 9;
 
 /// The values of all calculated variables.
 pub type Calculated<T> = SVector<T, CALCULATED>;
-
-/// A scalar whose matrices have a smallest singular value that can be computed.
-pub trait SingularValues: Scalar {
-    /// Smallest singular value of `matrix`.
-    fn sigma_min(matrix: &Matrix6<Self>) -> Self;
-}
-
-impl SingularValues for f64 {
-    fn sigma_min(matrix: &Matrix6<f64>) -> f64 {
-        matrix.singular_values_unordered().min()
-    }
-}
-
-impl SingularValues for Dual64 {
-    /// d(sigma) = u^T dJ v
-    fn sigma_min(matrix: &Matrix6<Dual64>) -> Dual64 {
-        let svd = matrix.map(|x| x.re).svd_unordered(true, true);
-        let smallest = svd.singular_values.imin();
-        let derivative = match (svd.u, svd.v_t) {
-            (Some(u), Some(v_t)) => u.column(smallest).dot(&(matrix.map(|x| x.eps) * v_t.row(smallest).transpose())),
-            _ => f64::NAN,
-        };
-        Dual64::new(svd.singular_values[smallest], derivative)
-    }
-}
 
 /// Calculated variables at state `x` under `inputs`.
 pub fn calculate<T: SingularValues>(model: &PlantModel<T>, x: &PlantState<T>, inputs: &Inputs<T>) -> Calculated<T> {
@@ -62,7 +36,7 @@ pub fn calculate<T: SingularValues>(model: &PlantModel<T>, x: &PlantState<T>, in
     row.put(e.motion.angular_velocity.as_slice());
     row.put(quaternion.as_slice());
     row.put(&[
-        T::sigma_min(&jacobian.matrix),
+        jacobian.sigma_min(),
         normalized_det_a(&model.geometry, &e.limbs),
         electric_power(model, x, inputs),
         energy(model, x),
