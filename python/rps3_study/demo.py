@@ -10,7 +10,7 @@ from tqdm import tqdm
 from rps3_study import report
 from rps3_study.couple import run_crossing
 from rps3_study.fmu import extracted
-from rps3_study.metrics import joint_circle_radius
+from rps3_study.geometry import Geometry
 from rps3_study.tasks import MODES, VARIANTS, supported_modes, tasks
 
 
@@ -48,11 +48,13 @@ def main(arguments: list[str] | None = None) -> None:
                         )
                         bar.update(done + duration - bar.n)
                     cases.append(report.Case(task, variant, runs))
-        radius = joint_circle_radius(float(plant.variables["joint_spacing"].start))
+        geometry = Geometry.of(plant)
     out = options.out or options.dist / "report"
-    index = report.write(out, cases, radius)
+    index = report.write(out, cases, geometry)
     for case in cases:
-        print(f"\n{case.task.title}, {case.variant}\n{report.markdown_table(*report.table(case, radius))}")
+        print(
+            f"\n{case.task.title}, {case.variant}\n{report.markdown_table(*report.table(case, geometry.joint_radius))}"
+        )
     print(f"\n{index}")
 
 

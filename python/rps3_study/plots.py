@@ -49,6 +49,7 @@ def figures(radius: float) -> dict[str, list[Panel]]:
         ],
         "position": [Panel(f"{axis.upper()} of P, cm", _plant(f"p_{axis}", 100.0)) for axis in "xyz"],
         "velocity": [Panel(f"velocity {axis.upper()}, cm/s", _plant(f"v_{axis}", 100.0)) for axis in "xyz"],
+        "forces": [Panel(f"axial force of limb {limb}, N", _plant(f"f_axial{limb}")) for limb in (1, 2, 3)],
         "control": [
             Panel("sigma_min", _plant("sigma_min")),
             Panel("largest |voltage|, V", _largest_voltage),

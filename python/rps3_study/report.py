@@ -10,8 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
-from rps3_study import design_study, plots
+from rps3_study import design_study, plots, report_page
 from rps3_study.couple import Run
+from rps3_study.geometry import Geometry
 from rps3_study.metrics import Figures
 from rps3_study.metrics import figures as figures_of
 from rps3_study.tasks import Task
@@ -31,17 +32,18 @@ class Case:
         return f"{self.task.key}-{self.variant.replace(' ', '-')}"
 
 
-def write(directory: Path, cases: list[Case], radius: float) -> Path:
-    """Writes the report into `directory` and returns its HTML page; `radius` as in `metrics.pose_error`."""
+def write(directory: Path, cases: list[Case], geometry: Geometry) -> Path:
+    """Writes the report into `directory` and returns its HTML page; `geometry` is the plant's in all runs."""
+    radius = geometry.joint_radius
     for part in ("data", "plots"):
         (directory / part).mkdir(parents=True, exist_ok=True)
     markdown = ["# Crossing a direct singularity", "", _INTRODUCTION, ""]
-    page = ["<h1>Crossing a direct singularity</h1>", f"<p>{html.escape(_INTRODUCTION)}</p>"]
+    tables = []
     for case in cases:
         title = f"{case.task.title}, {case.variant}"
         header, rows = table(case, radius)
         markdown += [f"## {title}", "", markdown_table(header, rows), ""]
-        page += [f"<h2>{html.escape(title)}</h2>", html_table(header, rows)]
+        tables.append(f'<div class="case"><h3>{html.escape(title)}</h3>\n{html_table(header, rows)}</div>')
         for mode, run in case.runs.items():
             stem = f"{case.stem}-{mode.lower().replace('+', '-')}"
             _write_csv(directory / "data" / f"{stem}.csv", run)
@@ -49,10 +51,9 @@ def write(directory: Path, cases: list[Case], radius: float) -> Path:
             image = f"plots/{case.stem}-{stem}.svg"
             plots.draw(directory / image, title, case.runs, panels)
             markdown += [f"![{stem}]({image})", ""]
-            page += [f'<p><img src="{image}" alt="{stem}"></p>']
     (directory / "report.md").write_text("\n".join(markdown), encoding="utf-8")
     index = directory / "index.html"
-    index.write_text(_PAGE.format(body="\n".join(page)), encoding="utf-8")
+    index.write_text(report_page.render(cases, geometry, _INTRODUCTION, tables), encoding="utf-8")
     return index
 
 
@@ -108,18 +109,3 @@ _INTRODUCTION = (
     "acceleration; DRAC: damped accelerations; HDRAC: damped velocities as well; fixed factors but for MPSO, which "
     "searches them at each sample. The design study knew the pose exactly and searched a grid in place of the swarm."
 )
-
-_PAGE = """<!DOCTYPE html>
-<html lang="en">
-<meta charset="utf-8">
-<title>3-RPS: crossing a direct singularity</title>
-<style>
-body {{ font: 16px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; }}
-table {{ border-collapse: collapse; }}
-th, td {{ padding: 0.2rem 0.7rem; border-bottom: 1px solid #ccc; text-align: right; }}
-th:first-child, td:first-child, th:last-child, td:last-child {{ text-align: left; }}
-img {{ max-width: 100%; }}
-</style>
-{body}
-</html>
-"""

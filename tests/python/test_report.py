@@ -6,11 +6,14 @@ import numpy as np
 import pytest
 from rps3_study import report
 from rps3_study.couple import Run
+from rps3_study.geometry import Geometry
 from rps3_study.metrics import COORDINATES, VOLTAGES, figures
 from rps3_study.tasks import Push, Task
 
 RADIUS = 0.2
-SIGNALS = [f"plant.{n}" for n in (*COORDINATES, "p_x", "p_y", "p_z", "v_x", "v_y", "v_z", "sigma_min")] + [
+POSE = (*(f"p_{axis}" for axis in "xyz"), *(f"q_{part}" for part in "wxyz"))
+FORCES = tuple(f"f_axial{limb}" for limb in (1, 2, 3))
+SIGNALS = [f"plant.{n}" for n in (*COORDINATES, *POSE, *FORCES, "v_x", "v_y", "v_z", "sigma_min")] + [
     f"controller.{n}" for n in (*VOLTAGES, *(f"{c}_ref" for c in COORDINATES), "rho", "rho_hd", "delta_hd", "lambda_f")
 ]
 
@@ -19,6 +22,7 @@ def made_up_run(failure: str | None = None, length: int = 5) -> Run:
     """Half the time 1 mm too high, half the time 10 mrad too tilted (2 mm at the radius), 12 V and 1 ms saturated."""
     values = {name: np.zeros(5) for name in SIGNALS}
     values["time"] = 1e-3 * np.arange(5)
+    values["plant.q_w"] = np.ones(5)
     values["plant.heave"] = np.array([1e-3, 1e-3, 0.0, 0.0, 0.0])
     values["controller.tilt_y_ref"] = np.array([0.0, 0.0, 1e-2, 1e-2, 0.0])
     values["controller.v_rev2"] = np.array([0.0, -12.0, 3.0, 0.0, 0.0])
@@ -47,7 +51,7 @@ def test_push_acts_while_the_time_is_closer_to_its_center_than_half_its_width() 
 def test_report_holds_table_plots_and_data_and_is_the_same_when_written_again(tmp_path: Path) -> None:
     runs = {"DRAC": made_up_run(), "HDRAC+MPSO": made_up_run("no | such mode", length=0)}
     cases = [report.Case(Task("smooth", "Crossing", {}), "six motors", runs)]
-    first, second = (report.write(tmp_path / name, cases, RADIUS).parent for name in ("first", "second"))
+    first, second = (report.write(tmp_path / name, cases, Geometry(0.4, RADIUS)).parent for name in ("first", "second"))
     files = sorted(str(path.relative_to(first).as_posix()) for path in first.rglob("*.*"))
     assert {"index.html", "report.md", "data/smooth-six-motors-drac.csv", "plots/smooth-six-motors-control.svg"} <= set(
         files

@@ -11,7 +11,8 @@ use indicatif::ProgressBar;
 use crate::{command, python, workspace};
 
 /// What the environment was made of; it is made anew when one of them changes.
-const SOURCES: [&str; 2] = ["tests/python/requirements.txt", "python/pyproject.toml"];
+const SOURCES: [&str; 3] =
+    ["tests/python/requirements.txt", "python/pyproject.toml", "python/rps3_study/report_page/vendored.txt"];
 
 /// Creates or renews `.venv`, unless it is up to date.
 ///
@@ -29,6 +30,7 @@ pub fn run() -> Result<()> {
         .context("cannot create .venv (Debian and Ubuntu need the package python3-venv)")?;
     let pip = ["-m", "pip", "install", "--disable-pip-version-check", "--no-input"];
     quietly(python::command(&pip).args(["--requirement", SOURCES[0]]))?;
+    quietly(python::command(&pip).args(["--no-deps", "--requirement", SOURCES[2]]))?;
     quietly(python::command(&pip).args(["--no-deps", "--no-build-isolation", "--editable", "python"]))?;
     fs::write(&stamp, wanted)?;
     eprintln!("created .venv");
