@@ -6,6 +6,7 @@ use super::Situation;
 use super::damping::SMALLEST_SQUARE;
 use crate::dynamics::{Motors, PlantModel, solve_positive_definite};
 use crate::scalar::{Scalar, constant};
+use crate::svd::Svd;
 
 /// Currents of leg and revolute motors, A, stacked.
 type Currents<T> = Vector6<T>;
@@ -41,11 +42,9 @@ impl ForceDistribution {
         } else {
             let scale = force_scale(model);
             let constant = model.motors.leg.force_constant;
-            let svd = (Matrix3::from_diagonal(&scale) * situation.leg_map / constant).svd_unordered(true, true);
-            let left = svd.u.unwrap_or_else(Matrix3::zeros);
-            let right = svd.v_t.unwrap_or_else(Matrix3::zeros).transpose();
-            let left = left.transpose() * Matrix3::from_diagonal(&scale) / constant;
-            Self::Three { left, sigma: svd.singular_values, right }
+            let svd = Svd::new(&(Matrix3::from_diagonal(&scale) * situation.leg_map / constant));
+            let left = svd.u.transpose() * Matrix3::from_diagonal(&scale) / constant;
+            Self::Three { left, sigma: svd.singular_values, right: svd.v }
         }
     }
 

@@ -4,6 +4,7 @@ use nalgebra::{Matrix3x6, Matrix6, SVector, Vector3, Vector6};
 
 use super::damping::SMALLEST_SQUARE;
 use super::{Damping, Situation};
+use crate::svd::Svd;
 
 /// J = U S V^T (4.9) with what (4.10) and (4.15) need of a situation: evaluating a damping is then
 /// a handful of operations.
@@ -27,11 +28,7 @@ pub struct SingularBasis {
 impl SingularBasis {
     /// Decomposes J of `situation`.
     pub fn new(situation: &Situation<f64>) -> Self {
-        let svd = situation.jacobian.svd_unordered(true, true);
-        // both were asked for; a J with a NaN gives NaNs here, which the caller refuses
-        let left = svd.u.unwrap_or_else(Matrix6::zeros);
-        let right = svd.v_t.unwrap_or_else(Matrix6::zeros).transpose();
-        let sigma = svd.singular_values;
+        let Svd { u: left, singular_values: sigma, v: right } = Svd::new(&situation.jacobian);
         Self {
             squares: sigma.component_mul(&sigma),
             desired: left.tr_mul(&situation.desired).component_mul(&sigma),
@@ -39,7 +36,7 @@ impl SingularBasis {
             to_coordinates: situation.to_coordinates * right,
             coordinate_bias: situation.coordinate_bias,
             right,
-            sigma_min: sigma.min(),
+            sigma_min: sigma[5],
         }
     }
 
