@@ -10,6 +10,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use crate::control::{
     ControlError, Controller, ControllerParameters, Diagnostics, Measurement, ReferencePoint, Tuning,
 };
+use crate::defaults as d;
 use crate::dynamics::solver::{Settings, Solver, SolverError};
 use crate::dynamics::{
     Inputs, NOMINAL, PlantModel, PlantParameters, PlantState, derivative, evaluate, settled_currents,
@@ -40,6 +41,22 @@ pub struct Experiment {
     /// Standard deviation of white noise on the measured limb lengths alone, m.
     pub length_noise: f64,
     pub noise_seed: u64,
+}
+
+impl Default for Experiment {
+    /// The default experiment of both FMUs.
+    fn default() -> Self {
+        Self {
+            plant: PlantParameters::default(),
+            controller: ControllerParameters::default(),
+            tuning: Tuning::default(),
+            duration: d::STOP_TIME,
+            tolerance: d::TOLERANCE,
+            push: None,
+            length_noise: 0.0,
+            noise_seed: 1,
+        }
+    }
 }
 
 /// Pose and controller at a tick.
@@ -89,10 +106,25 @@ impl Experiment {
     ///
     /// # Errors
     /// A controller or a plant that cannot go on.
-    pub fn run(&self, mut observe: impl FnMut(&Record)) -> Result<(), RunError> {
+    pub fn run(&self, observe: impl FnMut(&Record)) -> Result<(), RunError> {
+        let mut controller =
+            Controller::new(self.controller).map_err(|error| RunError::Control { time: 0.0, error })?;
+        let external =
+            ReferencePoint { position: Vector3::zeros(), rate: Vector3::zeros(), acceleration: Vector3::zeros() };
+        let tick = |t: f64, measured: &Measurement<f64>| controller.tick(t, measured, &external, &self.tuning, true);
+        self.run_with(tick, observe)
+    }
+
+    /// The same with `tick`, from time (s) and measurement, in the place of the controller.
+    ///
+    /// # Errors
+    /// A controller or a plant that cannot go on.
+    pub fn run_with(
+        &self,
+        mut tick: impl FnMut(f64, &Measurement<f64>) -> Result<Diagnostics, ControlError>,
+        mut observe: impl FnMut(&Record),
+    ) -> Result<(), RunError> {
         let model = PlantModel::new(&self.plant);
-        let fail = |time| move |error| RunError::Control { time, error };
-        let mut controller = Controller::new(self.controller).map_err(fail(0.0))?;
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(self.noise_seed);
         let mut x = PlantState::zeros();
         let start = Vector3::from(self.plant.start);
@@ -104,8 +136,6 @@ impl Experiment {
         let mut solver = Solver::default();
         let settings = Settings { tolerance: self.tolerance, nominal: NOMINAL, max_step: f64::INFINITY };
         let sample_time = self.controller.sample_time;
-        let external =
-            ReferencePoint { position: Vector3::zeros(), rate: Vector3::zeros(), acceleration: Vector3::zeros() };
         let ticks = libm::round(self.duration / sample_time) as u64;
         let mut inputs = Inputs::zero();
         for k in 0..ticks {
@@ -122,7 +152,7 @@ impl Experiment {
                     measured.lengths[i] += self.length_noise * noise;
                 }
             }
-            let diagnostics = controller.tick(time, &measured, &external, &self.tuning, true).map_err(fail(time))?;
+            let diagnostics = tick(time, &measured).map_err(|error| RunError::Control { time, error })?;
             observe(&Record { time, state: x, diagnostics });
             let v = &diagnostics.voltages;
             inputs.v_leg = Vector3::new(v[0], v[1], v[2]);

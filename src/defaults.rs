@@ -50,15 +50,17 @@ pub const THETA_MAX: f64 = 33.49 * DEG;
 pub const STOP_STIFFNESS: f64 = 1e6;
 pub const STOP_DAMPING: f64 = 5e3;
 
-/// The default crossing passes this singular pose (tilt 8 deg, direction 40 deg)
+/// The default crossing passes this singular pose (tilt 8 deg, direction 40 deg) ...
 pub const VIA_HEAVE: f64 = 0.0452873763;
 pub const VIA_TILT_X: f64 = 8.0 * DEG * COS_40;
 pub const VIA_TILT_Y: f64 = 8.0 * DEG * SIN_40;
-/// ... from here
+/// ... from a start that differs by this heave, m, and share of the tilt, to the end on the opposite side
+pub const CROSSING_HEAVE: f64 = 0.025;
+pub const CROSSING_TILT: f64 = -0.3;
+/// Start and end
 pub const START_HEAVE: f64 = VIA_HEAVE + CROSSING_HEAVE;
 pub const START_TILT_X: f64 = (1.0 + CROSSING_TILT) * VIA_TILT_X;
 pub const START_TILT_Y: f64 = (1.0 + CROSSING_TILT) * VIA_TILT_Y;
-/// ... to here
 pub const END_HEAVE: f64 = VIA_HEAVE - CROSSING_HEAVE;
 pub const END_TILT_X: f64 = (1.0 - CROSSING_TILT) * VIA_TILT_X;
 pub const END_TILT_Y: f64 = (1.0 - CROSSING_TILT) * VIA_TILT_Y;
@@ -120,5 +122,3 @@ pub const TOLERANCE: f64 = 1e-6;
 pub const DEG: f64 = std::f64::consts::PI / 180.0;
 const COS_40: f64 = 0.766_044_443_118_978;
 const SIN_40: f64 = 0.642_787_609_686_539_3;
-const CROSSING_HEAVE: f64 = 0.025;
-const CROSSING_TILT: f64 = -0.3;

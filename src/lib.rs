@@ -3,9 +3,10 @@
 //! "Modified PSO Method for Robust Control of 3RPS Parallel Manipulators".
 //!
 //! Rooms: [`mechanism`] (geometry and kinematics), [`dynamics`] (bodies, motors, forward
-//! dynamics), [`control`] (reference, estimator, control law, swarm), [`description`] (FMI 2.0
-//! model description), [`fmi2`] (the C interface; knows no robot) and [`models`] (the two FMUs:
-//! variable tables and the glue between the core and `fmi2`).
+//! dynamics), [`control`] (reference, estimator, control law, swarm), [`study`] (crossings and
+//! baselines to compare with; no part of the FMUs), [`description`] (FMI 2.0 model description),
+//! [`fmi2`] (the C interface; knows no robot) and [`models`] (the two FMUs: variable tables and the
+//! glue between the core and `fmi2`).
 #![deny(unsafe_code)]
 
 pub mod control;
@@ -18,4 +19,5 @@ pub mod fmi2;
 pub mod mechanism;
 pub mod models;
 pub mod scalar;
+pub mod study;
 pub mod svd;

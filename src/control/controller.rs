@@ -144,12 +144,7 @@ impl Controller {
         // a stream of its own, so that the swarm's luck does not depend on the sensors
         sensor_rng.jump();
         let memory = Memory {
-            estimator: Estimator::new(
-                parameters.sensors.deviations(),
-                parameters.filter_time,
-                parameters.sample_time,
-                parameters.waypoints[0],
-            ),
+            estimator: Estimator::of(&parameters),
             sensors: Sensors::new(parameters.sensors, sensor_rng),
             rng,
             particle: None,

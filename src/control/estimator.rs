@@ -8,7 +8,7 @@ use std::cmp::Ordering;
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::Measurement;
+use super::{ControllerParameters, Measurement};
 use crate::dynamics::solve_positive_definite;
 use crate::mechanism::{Geometry, Limb, Pose};
 use crate::scalar::{Scalar, constant};
@@ -44,6 +44,12 @@ const ITERATIONS: usize = 12;
 const CONVERGED: f64 = 1e-13;
 
 impl Estimator {
+    /// As a controller with `parameters` uses it, before its first tick.
+    pub fn of(parameters: &ControllerParameters) -> Self {
+        let ControllerParameters { sensors, filter_time, sample_time, waypoints, .. } = parameters;
+        Self::new(sensors.deviations(), *filter_time, *sample_time, waypoints[0])
+    }
+
     /// `deviations` of length (m) and angle (rad) readings; the filter's time constant
     /// `filter_time` (s), 0 for none; first guess `s` (m, rad, rad).
     pub fn new(deviations: (f64, f64), filter_time: f64, sample_time: f64, s: [f64; 3]) -> Self {

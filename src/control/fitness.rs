@@ -161,8 +161,13 @@ impl<'a> Fitness<'a> {
     #[inline]
     pub fn evaluate(&self, damping: &Damping<f64>) -> f64 {
         let rho_hd = damping.rho_hd(self.basis.sigma_min, self.sample_time);
-        let wanted = self.basis.coordinate_acceleration(damping.rho, rho_hd);
-        let acceleration = self.respond(&wanted, damping.lambda_f).component_mul(&self.scale);
+        self.of_acceleration(&self.basis.coordinate_acceleration(damping.rho, rho_hd), damping.lambda_f)
+    }
+
+    /// The fitness of asking for s_ddot = `wanted`, (m, rad, rad)/s2, in whatever way it was found.
+    #[inline]
+    pub fn of_acceleration(&self, wanted: &Vector3<f64>, lambda_f: f64) -> f64 {
+        let acceleration = self.respond(wanted, lambda_f).component_mul(&self.scale);
         self.outlook.weigh(&acceleration)
     }
 

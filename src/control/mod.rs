@@ -19,13 +19,14 @@ mod singular;
 mod situation;
 mod stability;
 
-pub use actuation::{ForceDistribution, VoltageCommand};
+pub use actuation::{ForceDistribution, VoltageCommand, voltages};
 pub use controller::{Controller, Diagnostics};
 pub use damping::{Damping, Mode};
 pub use estimator::{Estimate, Estimator};
 pub use fitness::{Fitness, fitness_of_currents};
 pub use parameters::{ControlError, ControllerParameters, Gains, SwarmParameters, Tuning};
 pub use preview::{Start, preview};
+pub(crate) use preview::{pose_errors, stacked_currents};
 pub use reference::{ExternalReference, Profile, Reference, ReferencePoint};
 pub use sensors::{Measurement, SensorParameters, Sensors};
 pub use singular::SingularBasis;

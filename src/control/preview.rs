@@ -70,13 +70,13 @@ pub fn preview<T: SingularValues>(
 }
 
 /// Measured currents of leg and revolute motors, A.
-pub(super) fn stacked_currents<T: Scalar>(measured: &Measurement<T>) -> Vector6<T> {
+pub(crate) fn stacked_currents<T: Scalar>(measured: &Measurement<T>) -> Vector6<T> {
     let (leg, revolute) = (&measured.leg_currents, &measured.revolute_currents);
     Vector6::new(leg.x, leg.y, leg.z, revolute.x, revolute.y, revolute.z)
 }
 
 /// Distance of P (m) and angle (rad) between two poses.
-pub(super) fn pose_errors<T: Scalar>(model: &PlantModel<T>, s: &Vector3<T>, reference: &Vector3<T>) -> (T, T) {
+pub(crate) fn pose_errors<T: Scalar>(model: &PlantModel<T>, s: &Vector3<T>, reference: &Vector3<T>) -> (T, T) {
     let (pose, target) = (Pose::new(&model.geometry, s), Pose::new(&model.geometry, reference));
     let rotation = target.rotation * pose.rotation.transpose();
     (length(&(target.position - pose.position)), length(&rotation_vector(&rotation)))

@@ -1,0 +1,160 @@
+//! Facts about the sensor model (Table 1) and the pose estimate.
+
+use nalgebra::{Matrix3, Vector3};
+use proptest::prelude::*;
+use rand::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rps3::control::{Estimator, Measurement, SensorParameters, Sensors};
+use rps3::coupling::measure;
+use rps3::defaults as d;
+use rps3::dynamics::{Inputs, PlantModel, PlantParameters, PlantState};
+use rps3::mechanism::{Limb, Pose};
+
+const DEVIATIONS: (f64, f64) = (1.5e-4, 0.2 * d::DEG);
+
+fn model() -> PlantModel<f64> {
+    PlantModel::new(&PlantParameters::default())
+}
+
+/// What ideal sensors tell at coordinates `s` and rates `s_dot`.
+fn exact(model: &PlantModel<f64>, s: [f64; 3], s_dot: [f64; 3]) -> Measurement<f64> {
+    let mut x = PlantState::zeros();
+    x.fixed_rows_mut::<3>(0).copy_from(&Vector3::from(s));
+    x.fixed_rows_mut::<3>(3).copy_from(&Vector3::from(s_dot));
+    measure(model, &x, &Inputs::zero())
+}
+
+const VIA: [f64; 3] = [d::VIA_HEAVE, d::VIA_TILT_X, d::VIA_TILT_Y];
+
+proptest! {
+    #[test]
+    fn exact_measurements_give_the_exact_pose_and_rates(
+        heave in 0.02..0.09_f64, tilt in prop::array::uniform2(-0.15..0.15_f64), rates in prop::array::uniform3(-0.5..0.5_f64),
+    ) {
+        let s = [heave, tilt[0], tilt[1]];
+        // first guess a crossing away
+        let mut estimator = Estimator::new(DEVIATIONS, 0.0, 1e-3, VIA);
+        let model = model();
+        let estimate = estimator.update(&model.geometry, &exact(&model, s, rates));
+        prop_assert!((estimate.s - Vector3::from(s)).amax() < 1e-13);
+        prop_assert!((estimate.s_dot - Vector3::from(rates)).amax() < 1e-12);
+    }
+}
+
+#[test]
+fn estimate_is_unbiased_and_as_precise_as_least_squares_can_be() {
+    let model = model();
+    let truth = exact(&model, VIA, [0.0; 3]);
+    let estimator = Estimator::new(DEVIATIONS, 0.0, 1e-3, VIA);
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(1);
+    let mut gauss = |deviation: f64| {
+        let z: f64 = StandardNormal.sample(&mut rng);
+        deviation * z
+    };
+    // At a direct singularity on purpose: lengths alone would leave one direction open.
+    let mut information = Matrix3::zeros();
+    for limb in Limb::all(&model.geometry, &Pose::new(&model.geometry, &VIA.into())) {
+        let (length, angle) = (limb.length_gradient / DEVIATIONS.0, limb.angle_gradient / DEVIATIONS.1);
+        information += length * length.transpose() + angle * angle.transpose();
+    }
+    let covariance = information.try_inverse().expect("six sensors see every motion");
+    let n = 20_000.0;
+    let (mut sum, mut squares) = (Vector3::zeros(), Matrix3::zeros());
+    for _ in 0..n as usize {
+        let mut noisy = truth;
+        for i in 0..3 {
+            noisy.lengths[i] += gauss(DEVIATIONS.0);
+            noisy.angles[i] += gauss(DEVIATIONS.1);
+        }
+        let error = estimator.fit(&model.geometry, &noisy, &VIA.into(), false).s - Vector3::from(VIA);
+        sum += error;
+        squares += error * error.transpose();
+    }
+    for i in 0..3 {
+        let deviation = covariance[(i, i)].sqrt();
+        // 4 standard deviations of the mean; of the variance, whose relative one is sqrt(2 / n)
+        assert!((sum[i] / n).abs() < 4.0 * deviation / n.sqrt(), "{i}: {:e}", sum[i] / n);
+        let ratio = squares[(i, i)] / n / covariance[(i, i)];
+        assert!((ratio - 1.0).abs() < 4.0 * (2.0 / n).sqrt(), "{i}: {ratio}");
+    }
+}
+
+#[test]
+fn filter_averages_noise_and_does_not_lag() {
+    let (model, sample_time, filter_time) = (model(), 1e-3, 0.05);
+    // A steady motion through the singular pose: exact readings come through without lag.
+    let rates = [-0.05, 0.1, 0.08];
+    let mut estimator = Estimator::new(DEVIATIONS, filter_time, sample_time, VIA);
+    for k in 0..400 {
+        let t = sample_time * f64::from(k) - 0.2;
+        let s = [0, 1, 2].map(|i| VIA[i] + rates[i] * t);
+        let estimate = estimator.update(&model.geometry, &exact(&model, s, rates));
+        assert!((estimate.s - Vector3::from(s)).amax() < 1e-14, "{k}");
+    }
+    // At rest the variance falls to g / (2 - g) of a single fit's, g = 1 - exp(-sample_time / filter_time).
+    let truth = exact(&model, VIA, [0.0; 3]);
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(2);
+    let (mut fitted, mut filtered) = (0.0, 0.0);
+    let mut estimator = Estimator::new(DEVIATIONS, filter_time, sample_time, VIA);
+    let n = 200_000;
+    for k in 0..n {
+        let mut noisy = truth;
+        for i in 0..3 {
+            let z: f64 = StandardNormal.sample(&mut rng);
+            noisy.lengths[i] += DEVIATIONS.0 * z;
+        }
+        let estimate = estimator.update(&model.geometry, &noisy);
+        if k > 1000 {
+            filtered += (estimate.s.x - VIA[0]).powi(2);
+            fitted += (estimator.fit(&model.geometry, &noisy, &VIA.into(), false).s.x - VIA[0]).powi(2);
+        }
+    }
+    let gain = 1.0 - (-sample_time / filter_time).exp();
+    let expected = gain / (2.0 - gain);
+    // about n / 100 independent values: relative deviation of the variance sqrt(2 / 2000) = 3 %
+    assert!((filtered / fitted / expected - 1.0).abs() < 0.12, "{} {expected}", filtered / fitted);
+}
+
+#[test]
+fn sensors_have_the_resolution_the_repeatability_and_the_static_error_of_table_1() {
+    let parameters = SensorParameters { scale: 1.0, ..SensorParameters::default() };
+    let truth = exact(&model(), VIA, [0.1, -0.2, 0.3]);
+    let mut biases = Vec::new();
+    for seed in 0..200 {
+        let mut sensors = Sensors::new(parameters, Xoshiro256PlusPlus::seed_from_u64(seed));
+        let n = 1000.0;
+        let (mut sum, mut square, mut angle_sum, mut angle_square) = (0.0, 0.0, 0.0, 0.0);
+        for _ in 0..n as usize {
+            let read = sensors.read(&truth);
+            for (value, resolution) in [(read.lengths[0], 1e-4), (read.angles[0], 0.15 * d::DEG)] {
+                let steps = value / resolution;
+                assert!((steps - steps.round()).abs() < 1e-9, "{value} is no multiple of {resolution}");
+            }
+            assert_eq!((read.length_rates, read.angle_rates), (truth.length_rates, truth.angle_rates));
+            assert_eq!((read.leg_currents, read.acceleration), (truth.leg_currents, truth.acceleration));
+            let (error, angle_error) = (read.lengths[0] - truth.lengths[0], read.angles[0] - truth.angles[0]);
+            sum += error / n;
+            square += error * error / n;
+            angle_sum += angle_error / n;
+            angle_square += angle_error * angle_error / n;
+        }
+        let (length_deviation, angle_deviation) = parameters.deviations();
+        // relative deviation of a standard deviation: 1 / sqrt(2 n) = 2.2 %, here within 4.5 of them
+        assert!(((square - sum * sum).sqrt() / length_deviation - 1.0).abs() < 0.1);
+        assert!(((angle_square - angle_sum * angle_sum).sqrt() / angle_deviation - 1.0).abs() < 0.1);
+        assert!(angle_sum.abs() < 4.5 * angle_deviation / n.sqrt(), "angles have no static error");
+        assert!(sum.abs() < d::SENSOR_LENGTH_BIAS + 4.5 * length_deviation / n.sqrt());
+        biases.push(sum);
+    }
+    // uniform within +-3 mm: standard deviation 3 mm / sqrt(3)
+    let deviation = (biases.iter().map(|b| b * b).sum::<f64>() / 200.0).sqrt();
+    assert!((deviation / (d::SENSOR_LENGTH_BIAS / 3.0_f64.sqrt()) - 1.0).abs() < 0.15, "{deviation}");
+}
+
+#[test]
+fn ideal_sensors_pass_everything_on() {
+    let truth = exact(&model(), VIA, [0.1, -0.2, 0.3]);
+    let mut sensors = Sensors::new(SensorParameters::default(), Xoshiro256PlusPlus::seed_from_u64(1));
+    assert_eq!(sensors.read(&truth), truth);
+}
