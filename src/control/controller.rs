@@ -115,8 +115,8 @@ pub struct Diagnostics<T = f64> {
     pub iterations: usize,
 }
 
-/// rho and lambda_f are searched as the largest times z^EXPONENT, z in [0, 1]: nearly logarithmic
-/// where it matters, and zero is within reach.
+/// Dampings are searched as the largest times z^EXPONENT, z in [0, 1]: nearly logarithmic where it
+/// matters, and zero is within reach. For delta_hd that means: no deceleration however small sigma_min is.
 const EXPONENT: i32 = 8;
 
 /// The prediction over a delay of one sample; the state is known less well than this.
@@ -298,7 +298,7 @@ impl Controller {
         let largest = self.parameters.swarm.largest;
         let damping = |z: [f64; 3]| Damping {
             rho: largest.rho * z[0].powi(EXPONENT),
-            delta_hd: largest.delta_hd * z[1],
+            delta_hd: largest.delta_hd * z[1].powi(EXPONENT),
             lambda_f: largest.lambda_f * z[2].powi(EXPONENT),
         };
         let warm_start = *particle;
