@@ -56,7 +56,7 @@ impl<T: Scalar> Situation<T> {
         let pose = Pose::new(geometry, &s);
         let motion = pose.motion(geometry, &s_dot);
         let limbs = Limb::all(geometry, &pose);
-        let limb_motions: [LimbMotion<T>; 3] = [0, 1, 2].map(|i| limbs[i].motion(&motion, &s_dot));
+        let limb_motions = Limb::motions(&limbs, &motion, &s_dot);
         let jacobian = OverallJacobian::new(geometry, &limbs).matrix;
 
         // The reference on the joint side; its constraint displacements are zero for good.

@@ -96,14 +96,25 @@ impl<T: Scalar> Bodies<T> {
     /// Mass matrix alone, reflected rotor inertia included.
     #[inline]
     pub fn mass_matrix(&self, pose: &Pose<T>, limbs: &[Limb<T>; 3], motors: &Motors<T>) -> Matrix3<T> {
-        let mut m = pose.linear_map.tr_mul(&pose.linear_map) * self.plate_mass;
-        let normal_rate = pose.angular_map.tr_mul(&pose.rotation.column(2));
-        m += pose.angular_map.tr_mul(&pose.angular_map) * self.plate_ixx;
+        let mut m = Matrix3::zeros();
+        // The platform, row by row of the maps: the components of P's and the angular velocity.
+        // Heave moves P along z alone, tilt does not.
+        m.m11 = self.plate_mass;
+        for row in 0..2 {
+            let gradient = Vector3::new(T::zero(), pose.linear_map[(row, 1)], pose.linear_map[(row, 2)]);
+            add_outer(&mut m, &gradient, self.plate_mass);
+        }
+        for row in 0..3 {
+            let gradient = Vector3::new(T::zero(), pose.angular_map[(row, 1)], pose.angular_map[(row, 2)]);
+            add_outer(&mut m, &gradient, self.plate_ixx);
+        }
+        let normal_rate = pose.generalized_force(&Vector3::zeros(), &pose.rotation.column(2).into());
         add_outer(&mut m, &normal_rate, self.plate_izz - self.plate_ixx);
         for limb in limbs {
             add_outer(&mut m, &limb.length_gradient, self.upper_mass + motors.leg.reflected_inertia);
             add_outer(&mut m, &limb.angle_gradient, self.limb_inertia(limb) + motors.revolute.reflected_inertia);
         }
+        (m.m12, m.m13, m.m23) = (m.m21, m.m31, m.m32);
         m
     }
 
@@ -119,7 +130,7 @@ impl<T: Scalar> Bodies<T> {
     ) -> MechanismDynamics<T> {
         let (force, moment) =
             self.plate_wrench(pose, &motion.angular_velocity, &motion.linear_bias, &motion.angular_bias);
-        let mut bias = pose.linear_map.tr_mul(&force) + pose.angular_map.tr_mul(&moment);
+        let mut bias = pose.generalized_force(&force, &moment);
         for (limb, rates) in limbs.iter().zip(limb_motions) {
             let (along, about) = self.limb_bias(limb, rates);
             let length_inertia = self.upper_mass + motors.leg.reflected_inertia;
@@ -140,12 +151,12 @@ impl<T: Scalar> Bodies<T> {
     }
 }
 
-/// m += scale v v^T
+/// m += scale v v^T in the lower triangle.
 #[inline]
 fn add_outer<T: Scalar>(m: &mut Matrix3<T>, v: &Vector3<T>, scale: T) {
     let scaled = v * scale;
     for j in 0..3 {
-        for i in 0..3 {
+        for i in j..3 {
             m[(i, j)] += scaled[i] * v[j];
         }
     }

@@ -1,7 +1,7 @@
 //! Smooth one-sided end stops of limb lengths and angles.
 
 use super::PlantParameters;
-use crate::mechanism::Geometry;
+use crate::mechanism::{Geometry, Limb};
 use crate::scalar::{Scalar, constant};
 
 /// Limits of one joint coordinate with stiffness and damping beyond them.
@@ -70,6 +70,8 @@ pub struct EndStops<T> {
     pub length: EndStop<T>,
     /// Of the limb angles; stiffness, damping and width at a lever r_b.
     pub angle: EndStop<T>,
+    /// Sines between which an inward limb is within its limits for sure.
+    free_sines: (T, T),
 }
 
 impl<T: Scalar> EndStops<T> {
@@ -82,9 +84,22 @@ impl<T: Scalar> EndStops<T> {
             damping: parameters.stop_damping * lever * lever,
             width: constant::<T>(WIDTH) / lever,
         };
+        let quarter_turn = constant::<T>(std::f64::consts::FRAC_PI_2);
+        let sine = |angle: T| angle.max(-quarter_turn).min(quarter_turn).sin();
         Self {
             length: stop(parameters.d_min, parameters.d_max, T::one()),
             angle: stop(parameters.theta_min, parameters.theta_max, lever),
+            free_sines: (sine(parameters.theta_min), sine(parameters.theta_max)),
         }
+    }
+
+    /// Torque on a limb's revolute joint, N.m. The angle itself is computed only near a stop.
+    #[inline]
+    pub fn torque(&self, limb: &Limb<T>, rate: T) -> T {
+        let (low, high) = self.free_sines;
+        if limb.cos > T::zero() && limb.sin > low && limb.sin < high {
+            return T::zero();
+        }
+        self.angle.force(limb.angle(), rate)
     }
 }

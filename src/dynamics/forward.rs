@@ -26,14 +26,14 @@ pub struct Evaluation<T> {
 }
 
 /// Everything at state `x` under `inputs`.
-#[inline]
+#[inline(always)] // into `derivative`, which needs a part of it alone
 pub fn evaluate<T: Scalar>(model: &PlantModel<T>, x: &PlantState<T>, inputs: &Inputs<T>) -> Evaluation<T> {
     let (s, s_dot) = (coordinates(x), rates(x));
     let (i_leg, i_rev) = currents(x);
     let pose = Pose::new(&model.geometry, &s);
     let motion = pose.motion(&model.geometry, &s_dot);
     let limbs = Limb::all(&model.geometry, &pose);
-    let limb_motions = [0, 1, 2].map(|i| limbs[i].motion(&motion, &s_dot));
+    let limb_motions = Limb::motions(&limbs, &motion, &s_dot);
     let motors = &model.motors;
     let dynamics = model.bodies.dynamics(&pose, &motion, &limbs, &limb_motions, motors);
     let length_rates = Vector3::from_fn(|i, _| limb_motions[i].length_rate);
@@ -46,10 +46,10 @@ pub fn evaluate<T: Scalar>(model: &PlantModel<T>, x: &PlantState<T>, inputs: &In
     if let Some(stops) = &model.stops {
         for i in 0..3 {
             leg_forces[i] += stops.length.force(limbs[i].length, length_rates[i]);
-            revolute_torques[i] += stops.angle.force(limbs[i].angle(), angle_rates[i]);
+            revolute_torques[i] += stops.torque(&limbs[i], angle_rates[i]);
         }
     }
-    let mut force = pose.linear_map.tr_mul(&inputs.force) + pose.angular_map.tr_mul(&inputs.moment) - dynamics.bias;
+    let mut force = pose.generalized_force(&inputs.force, &inputs.moment) - dynamics.bias;
     for i in 0..3 {
         force += limbs[i].length_gradient * leg_forces[i] + limbs[i].angle_gradient * revolute_torques[i];
     }
@@ -72,7 +72,7 @@ pub fn evaluate<T: Scalar>(model: &PlantModel<T>, x: &PlantState<T>, inputs: &In
 }
 
 /// The right-hand side x_dot = f(x, u).
-#[inline]
+#[inline(never)] // large, and called seven times by a solver's step
 pub fn derivative<T: Scalar>(model: &PlantModel<T>, x: &PlantState<T>, inputs: &Inputs<T>) -> PlantState<T> {
     evaluate(model, x, inputs).derivative
 }

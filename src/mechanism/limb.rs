@@ -58,8 +58,7 @@ impl<T: Scalar> Limb<T> {
         let sin = axial.z;
         let cos = -(axial.x * radial.x + axial.y * radial.y);
         let normal = Vector3::new(sin * radial.x, sin * radial.y, cos);
-        let gradient =
-            |direction: &Vector3<T>| pose.linear_map.tr_mul(direction) + pose.angular_map.tr_mul(&arm.cross(direction));
+        let gradient = |direction: &Vector3<T>| pose.generalized_force(direction, &arm.cross(direction));
         Self {
             arm,
             length,
@@ -76,12 +75,19 @@ impl<T: Scalar> Limb<T> {
     /// All three limbs.
     #[inline]
     pub fn all(geometry: &Geometry<T>, pose: &Pose<T>) -> [Self; 3] {
-        [0, 1, 2].map(|i| Self::new(geometry, pose, i))
+        [Self::new(geometry, pose, 0), Self::new(geometry, pose, 1), Self::new(geometry, pose, 2)]
     }
 
     /// The angle theta_i, rad.
     pub fn angle(&self) -> T {
         self.sin.atan2(self.cos)
+    }
+
+    /// Motions of all three limbs.
+    #[inline]
+    pub fn motions(limbs: &[Self; 3], pose_motion: &PoseMotion<T>, s_dot: &Vector3<T>) -> [LimbMotion<T>; 3] {
+        let [a, b, c] = limbs;
+        [a.motion(pose_motion, s_dot), b.motion(pose_motion, s_dot), c.motion(pose_motion, s_dot)]
     }
 
     /// Rates and bias accelerations at the platform's motion and rates `s_dot`.

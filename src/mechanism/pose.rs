@@ -118,6 +118,18 @@ impl<T: Scalar> Pose<T> {
         }
     }
 
+    /// Generalized force of a `force` at P (N) and a `moment` (N.m), base frame: the transposed maps
+    /// times them. Heave moves P along z alone and tilt does not, which halves the work.
+    #[inline]
+    pub fn generalized_force(&self, force: &Vector3<T>, moment: &Vector3<T>) -> Vector3<T> {
+        let (l, a) = (&self.linear_map, &self.angular_map);
+        Vector3::new(
+            force.z,
+            l.m12 * force.x + l.m22 * force.y + a.m12 * moment.x + a.m22 * moment.y + a.m32 * moment.z,
+            l.m13 * force.x + l.m23 * force.y + a.m13 * moment.x + a.m23 * moment.y + a.m33 * moment.z,
+        )
+    }
+
     /// Orientation as a unit quaternion (w, x, y, z) with w >= 0 for tilts up to 180 deg.
     pub fn quaternion(&self) -> Vector4<T> {
         let [x, y] = self.tilt;

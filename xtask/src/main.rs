@@ -7,6 +7,7 @@ mod command;
 mod demo;
 mod describe;
 mod fmu;
+mod instructions;
 mod library;
 mod lint;
 mod package;
@@ -40,6 +41,8 @@ enum Task {
     Demo(demo::Options),
     /// Run every test: Rust, then the packaged FMUs through Python
     Test(test::Options),
+    /// Count the instructions of the hot paths and compare with the record
+    Instructions(instructions::Options),
     /// Check format, lints, documentation and Python code
     Lint,
 }
@@ -51,6 +54,7 @@ fn main() -> ExitCode {
         Task::Package(options) => package::run(&options),
         Task::Demo(options) => demo::run(&options),
         Task::Test(options) => test::run(&options),
+        Task::Instructions(options) => instructions::run(&options),
         Task::Lint => lint::run(),
     };
     match outcome {

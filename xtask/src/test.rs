@@ -5,7 +5,7 @@ use std::time::Instant;
 use anyhow::{Result, bail};
 use clap::Args;
 
-use crate::{command, package, python, setup, workspace};
+use crate::{command, instructions, package, python, setup, workspace};
 
 /// Options of `test`.
 #[derive(Debug, Args)]
@@ -27,6 +27,7 @@ pub fn run(options: &Options) -> Result<()> {
         command::tee(&mut command::cargo(&["test", "--workspace", "--no-fail-fast"]), |line| {
             line.starts_with("test result:")
         })?;
+    let instructions = instructions::run(&instructions::Options::default());
     package::run(&package::Options::default())?;
     let mut pytest = python::command(&["-m", "pytest", "tests/python", "--color=no", "-ra"]);
     pytest.env("RPS3_DIST", workspace::dist()).args(&options.pytest);
@@ -36,7 +37,7 @@ pub fn run(options: &Options) -> Result<()> {
     if !(rust_passed && python_passed) {
         bail!("tests failed");
     }
-    Ok(())
+    instructions
 }
 
 /// Adds up the counts of libtest's result lines.
