@@ -1,7 +1,7 @@
 //! The surface of direct singularities as CSV: for every tilt and direction of the platform all
 //! singular heaves, the limbs there, and whether the pose lies within the joint limits.
 //!
-//! `cargo run --release --example atlas > atlas.csv`, then `python -m rps3_study.atlas atlas.csv`.
+//! `cargo xtask atlas` runs this and draws the table.
 
 use std::io::{BufWriter, Write};
 

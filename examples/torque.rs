@@ -1,7 +1,7 @@
 //! Inverse dynamics of the default crossing as CSV: torque, current and voltage of every motor,
 //! with six motors and with three.
 //!
-//! `cargo run --release --example torque > torque.csv`, then `python -m rps3_study.torque torque.csv`.
+//! `cargo xtask torque` runs this and draws the table.
 
 use std::io::{BufWriter, Write};
 

@@ -3,7 +3,7 @@
 
 use nalgebra::{Matrix6, Vector3, Vector6};
 use proptest::prelude::*;
-use rps3::control::{Damping, Estimate, Gains, Measurement, ReferencePoint, Situation, lyapunov_rate};
+use rps3::control::{Damping, Estimate, Gains, Measurement, ReferencePoint, SingularBasis, Situation, lyapunov_rate};
 use rps3::defaults::{BASE_RADIUS, JOINT_SPACING};
 use rps3::dynamics::{MechanismParameters, PlantModel};
 use rps3::mechanism::{Geometry, Limb, OverallJacobian, Pose, singular_heights};
@@ -92,6 +92,26 @@ fn situation(s: Vector3<f64>, s_dot: Vector3<f64>, offset: Vector3<f64>, gains: 
 const GAINS: Gains = Gains { position: 900.0, velocity: 60.0, acceleration: 0.0 };
 
 proptest! {
+    #[test]
+    fn singular_basis_weighs_directions_as_the_matrix_form_does(
+        tilt in 0.02..0.4_f64, direction in 0.0..std::f64::consts::TAU, off in prop::sample::select(vec![0.0, 1e-9, 1e-6, 1e-3]),
+        rates in prop::array::uniform3(-0.5..0.5_f64), rho in 0.01..0.5_f64,
+    ) {
+        // (4.10) and (4.15) against (4.14), at and next to direct singularities
+        let g = Geometry::new(BASE_RADIUS, JOINT_SPACING);
+        let (tilt_x, tilt_y) = (tilt * direction.cos(), tilt * direction.sin());
+        let heave = singular_heights(&g, tilt_x, tilt_y).last().unwrap() + off;
+        let situation = situation(Vector3::new(heave, tilt_x, tilt_y), Vector3::from(rates), Vector3::new(2e-3, 0.01, -0.02), &GAINS);
+        let damping = damping(rho);
+        let basis = SingularBasis::new(&situation);
+        let rho_hd = damping.rho_hd(basis.sigma_min, 1e-3);
+        let by_matrix = damping.acceleration(&situation.jacobian, &situation.desired, &situation.twist, rho_hd).unwrap();
+        let by_directions = basis.acceleration(&damping, 1e-3);
+        // the matrix form squares the condition number
+        let scale = (situation.desired.amax() + rho_hd) / (rho * rho);
+        prop_assert!((by_matrix - by_directions).amax() < 1e-12 * scale, "{by_matrix} {by_directions}");
+    }
+
     #[test]
     fn lyapunov_rate_is_what_the_hybrid_law_makes_of_5_4(
         s in prop::array::uniform3(0.02..0.1_f64), rates in prop::array::uniform3(-0.5..0.5_f64),

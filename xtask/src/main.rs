@@ -2,6 +2,7 @@
 //! with `run` and a line in [`Task`] and in `main`.
 #![forbid(unsafe_code)]
 
+mod analysis;
 mod archive;
 mod command;
 mod demo;
@@ -39,6 +40,10 @@ enum Task {
     Package(package::Options),
     /// Couple the packaged FMUs through the singularity and write dist/report/
     Demo(demo::Options),
+    /// Map the direct singularities: dist/analysis/atlas.csv and .png
+    Atlas,
+    /// Inverse dynamics of the crossing: dist/analysis/torque.csv and .png
+    Torque,
     /// Run every test: Rust, then the packaged FMUs through Python
     Test(test::Options),
     /// Count the instructions of the hot paths and compare with the record
@@ -53,6 +58,8 @@ fn main() -> ExitCode {
         Task::Describe => describe::run(),
         Task::Package(options) => package::run(&options),
         Task::Demo(options) => demo::run(&options),
+        Task::Atlas => analysis::run("atlas"),
+        Task::Torque => analysis::run("torque"),
         Task::Test(options) => test::run(&options),
         Task::Instructions(options) => instructions::run(&options),
         Task::Lint => lint::run(),
