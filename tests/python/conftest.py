@@ -1,14 +1,18 @@
 """Fixtures: the packaged FMUs, from the directory in RPS3_DIST (default: dist/)."""
 
 import os
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from playwright.sync_api import Page, sync_playwright
 from rps3_study.fmu import Fmu, Value, extracted
 
 ROOT = Path(__file__).resolve().parents[2]
 IDENTIFIERS = ("Rps3Plant", "Rps3Controller")
+# software rendering: WebGL without a graphics card; no sandbox: it does not start for root
+BROWSER_ARGUMENTS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"]
 
 
 @pytest.fixture(scope="session")
@@ -50,3 +54,21 @@ def fmu(request: pytest.FixtureRequest, fmus: dict[str, Fmu]) -> Fmu:
 def settings(fmu: Fmu) -> dict[str, Value]:
     """Parameters with which the FMU at hand runs fast and without random numbers."""
     return {"control_mode": 2} if "control_mode" in fmu.variables else {}
+
+
+@pytest.fixture
+def page() -> Iterator[Page]:
+    """A page of an offline browser; at the end of the test its console must hold no error."""
+    browser_program = next(filter(None, map(shutil.which, ("chromium", "google-chrome", "chromium-browser"))), None)
+    if browser_program is None:
+        pytest.skip("no Chromium on this machine (Debian: apt install chromium)")
+    problems: list[str] = []
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=browser_program, args=BROWSER_ARGUMENTS)
+        page = browser.new_context(offline=True, viewport={"width": 1500, "height": 950}).new_page()
+        page.on("console", lambda message: problems.append(message.text) if message.type == "error" else None)
+        page.on("pageerror", lambda error: problems.append(str(error)))
+        page.on("requestfailed", lambda request: problems.append(f"{request.url} is asked for and not there"))
+        yield page
+        browser.close()
+    assert not problems

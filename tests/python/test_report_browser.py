@@ -1,19 +1,15 @@
 """The report's page in a real browser, opened from the disk and without network."""
 
-import shutil
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
-from playwright.sync_api import Page, sync_playwright
+from playwright.sync_api import Page
 from rps3_study import demo
 from rps3_study.couple import run_crossing
 from rps3_study.fmu import Fmu
 from rps3_study.geometry import Geometry, degenerate_twists
 
-# software rendering: WebGL without a graphics card
-ARGUMENTS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"]
 VIEWS = "#animation .view:not([hidden])"
 CURSOR = "document.getElementById('plot').layout.shapes[0].x0"
 
@@ -24,24 +20,6 @@ def report(dist: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     directory = tmp_path_factory.mktemp("report")
     demo.main(["--dist", str(dist), "--out", str(directory), "--tasks", "smooth", "--modes", "1", "2"])
     return directory / "index.html"
-
-
-@pytest.fixture
-def page() -> Iterator[Page]:
-    """A page of an offline browser; at the end of the test its console must hold no error."""
-    browser_program = next(filter(None, map(shutil.which, ("chromium", "google-chrome", "chromium-browser"))), None)
-    if browser_program is None:
-        pytest.skip("no Chromium on this machine (Debian: apt install chromium)")
-    problems: list[str] = []
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=browser_program, args=ARGUMENTS)
-        page = browser.new_context(offline=True, viewport={"width": 1500, "height": 950}).new_page()
-        page.on("console", lambda message: problems.append(message.text) if message.type == "error" else None)
-        page.on("pageerror", lambda error: problems.append(str(error)))
-        page.on("requestfailed", lambda request: problems.append(f"{request.url} is asked for and not there"))
-        yield page
-        browser.close()
-    assert not problems
 
 
 def opened(page: Page, report: Path) -> Page:

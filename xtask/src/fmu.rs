@@ -26,7 +26,8 @@ pub const ALL: [Fmu; 2] = [CONTROLLER, PLANT];
 
 const LICENSE: &str = "\
 The FMU is licensed under the MIT license (LICENSE-MIT.txt) or the Apache License, version 2.0
-(LICENSE-APACHE.txt), at your option.
+(LICENSE-APACHE.txt), at your option. Texts of the licenses of the crates that are linked into it:
+third-party/. Its documentation, ../index.html, lists them.
 ";
 
 impl Fmu {
@@ -49,7 +50,8 @@ impl Fmu {
         fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))
     }
 
-    /// The FMU's archive for the host's platform (FMI 2.0, section 2.3.1). What lies in
+    /// The FMU's archive for the host's platform (FMI 2.0, section 2.3.1), without what is only known from its
+    /// runs: see [`crate::documentation`]. What lies in
     /// `fmus/<component>/archive/` goes in as it is.
     ///
     /// # Errors

@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use clap::Args;
 
-use crate::{fmu, library, platform, ssp, workspace};
+use crate::{documentation, fmu, library, licenses, platform, ssp, workspace};
 
 /// Options of `package`.
 #[derive(Debug, Args)]
@@ -31,9 +31,14 @@ pub fn run(options: &Options) -> Result<()> {
     let build = library::build(&options.profile)?;
     let dist = workspace::dist();
     fs::create_dir_all(&dist)?;
+    let crates = licenses::linked()?;
+    let bare = fmu::ALL.into_iter().map(|fmu| Ok((fmu, fmu.archive(&build)?))).collect::<Result<Vec<_>>>()?;
+    let documentation = documentation::render(&bare, &crates)?;
     let mut fmus = Vec::new();
-    for fmu in fmu::ALL {
-        let bytes = fmu.archive(&build)?.bytes()?;
+    for (fmu, mut archive) in bare {
+        archive.insert_tree(&documentation.join(fmu.identifier))?;
+        licenses::insert(&mut archive, &crates)?;
+        let bytes = archive.bytes()?;
         write(&dist.join(fmu.archive_file()), &bytes)?;
         fmus.push((fmu, fmu.description(&build)?, bytes));
     }

@@ -39,7 +39,9 @@ def three() -> Library:
     revision = re.search(r'^ \*/\s*const \w+="(\d+)"', code, re.MULTILINE)
     if notice is None or revision is None:
         raise LookupError("NiceGUI's 3D scene does not begin with three.js's copyright and revision")
-    license = f"{notice[1]}. MIT license. Bundled by NiceGUI (Copyright 2021 Zauberzeug GmbH, MIT license)."
+    tween = "tween.js (Copyright 2010-2012 Tween.js authors, MIT license)"
+    bundle = f"Bundled with {tween} by NiceGUI (Copyright 2021 Zauberzeug GmbH, MIT license)"
+    license = f"{notice[1]}. MIT license. {bundle}."
     return Library("three.js", f"r{revision[1]}", license, source, code)
 
 
