@@ -55,7 +55,7 @@ fn right_hand_side() {
     let model = PlantModel::new(&PlantParameters::default());
     let mut x = PlantState::<f64>::zeros();
     x[0] = 0.05;
-    assert_eq!(measure(|| drop(std::hint::black_box(derivative(&model, &x, &Inputs::zero())))).count_total, 0);
+    assert_eq!(measure(|| _ = std::hint::black_box(derivative(&model, &x, &Inputs::zero()))).count_total, 0);
 }
 
 #[test]
