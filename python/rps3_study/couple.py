@@ -46,6 +46,7 @@ def run_crossing(
     tolerance: float | None = 1e-6,
     disturbance: Disturbance | None = None,
     exchange: Exchange = "gauss-seidel",
+    offsets: Mapping[str, float] | None = None,
     progress: Callable[[float], object] | None = None,
 ) -> Run:
     """Couples both FMUs by equal variable names from 0 to `stop_time`.
@@ -61,6 +62,7 @@ def run_crossing(
         disturbance: further inputs of the plant (N, N.m) at a time in s.
         exchange: "gauss-seidel": the controller steps first and the plant gets its new voltages;
             "jacobi": both step with the values of the step's start, so voltages arrive one step late.
+        offsets: added to what the controller measures, by the name of its input: sensors zeroed elsewhere.
         progress: called with the time reached after each step, s.
 
     Returns:
@@ -73,12 +75,17 @@ def run_crossing(
     count = round(stop_time / step)
     rows: list[list[Value]] = []
     failure = None
+
+    def measured(p: Instance) -> dict[str, Value]:
+        values = p.get(to_controller)
+        return {**values, **{name: values[name] + offset for name, offset in (offsets or {}).items()}}
+
     with Instance(plant, "plant") as p, Instance(controller, "controller") as c:
         try:
             p.initialize(plant_parameters, stop_time=stop_time, tolerance=tolerance)
             c.set(controller_parameters or {})
             c.setup(stop_time=stop_time)
-            c.set(p.get(to_controller))
+            c.set(measured(p))
             c.slave.exitInitializationMode()
             for k in range(count + 1):
                 t = k * step
@@ -89,7 +96,7 @@ def run_crossing(
                     # there is no tick at the end: the last one's outputs still hold
                     rows.append([*row, *c.get(controller_outputs).values()])
                     break
-                c.set(p.get(to_controller))
+                c.set(measured(p))
                 if exchange == "jacobi":
                     p.set(c.get(to_plant))
                     c.step(t, step)

@@ -38,10 +38,11 @@ class Fmu:
     description: ModelDescription
 
     @classmethod
-    def extract(cls, archive: str | Path) -> Self:
-        """Unpacks an archive into a temporary directory; `remove` deletes it."""
+    def extract(cls, archive: str | Path, directory: str | Path | None = None) -> Self:
+        """Unpacks an archive into `directory`, by default a temporary one; `remove` deletes it."""
         path = Path(archive)
-        return cls(path, Path(fmpy.extract(str(path))), read_model_description(str(path)))
+        unpacked = fmpy.extract(str(path), unzipdir=None if directory is None else str(directory))
+        return cls(path, Path(unpacked), read_model_description(str(path)))
 
     def remove(self) -> None:
         """Deletes the extracted files."""
