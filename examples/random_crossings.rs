@@ -79,7 +79,7 @@ fn print_losses(crossings: &[Crossing], results: &[[Figures; MODES.len()]]) {
             .min_by(|a, b| a.0.total_cmp(&b.0))
             .unwrap_or((f64::INFINITY, "none"));
         // (a NaN counts as worse)
-        if !(swarm.peak <= best) {
+        if swarm.peak.partial_cmp(&best).is_none_or(std::cmp::Ordering::is_gt) {
             let [heave, x, y] = crossing.waypoints[1];
             println!(
                 "swarm worse: heave {:.2} cm, tilt {:.2} deg, direction {:.1} deg: {:.3} mm, {name} {:.3} mm",

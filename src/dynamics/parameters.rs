@@ -300,7 +300,7 @@ impl MechanismParameters {
 impl PlantParameters {
     /// # Errors
     /// Names the first parameter that no plant can have. Whether the start pose lies within the
-    /// limits is for [`super::PlantModel::start`] to say.
+    /// limits is for the model to say, which knows the geometry.
     pub fn validate(&self) -> Result<(), ParameterError> {
         self.mechanism.validate()?;
         check(

@@ -1,7 +1,7 @@
 //! Which function may be called when: the tables of FMI 2.0.5, sections 3.2.3 and 4.2.4.
 //!
 //! The conditions that the standard puts on single variables (its footnotes 1 to 6) stand in
-//! [`super::layout`]. Deviations, all to the lenient side: values of any variable, not only of
+//! `layout`. Deviations, all to the lenient side: values of any variable, not only of
 //! `InitialUnknowns`, can be read in Initialization Mode (footnote 2), since masters do so; and
 //! `fmi2FreeInstance` frees an instance in every mode.
 

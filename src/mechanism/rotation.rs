@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use crate::scalar::{Scalar, constant};
 
 /// With t the rotation angle and u = t^2, the coefficients of
-/// exp([phi]x) = I + a [phi]x + b [phi]x^2 and of its left Jacobian I + b [phi]x + c [phi]x^2,
+/// `exp([phi]x) = I + a [phi]x + b [phi]x^2` and of its left Jacobian `I + b [phi]x + c [phi]x^2`,
 /// and what is needed of their derivatives with respect to u.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ExponentialCoefficients<T> {
