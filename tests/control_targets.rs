@@ -1,0 +1,61 @@
+//! What the tuned damping must reach on the default crossing, and that nothing diverges elsewhere.
+
+use rand::SeedableRng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rps3::coupling::Experiment;
+use rps3::dynamics::PlantParameters;
+use rps3::study::{Crossing, MODES};
+
+/// Peak pose errors, mm: the best of the fixed modes and the swarm's.
+fn peaks(revolute_motors: bool, length_noise: f64) -> (f64, f64) {
+    let experiment = Experiment { length_noise, ..Crossing::default().experiment(revolute_motors) };
+    let peaks = MODES.map(|scheme| {
+        let figures = scheme.figures(&experiment);
+        assert_eq!(figures.failure, None, "{}", scheme.name);
+        figures.peak * 1e3
+    });
+    let [fixed @ .., swarm] = peaks;
+    (fixed.into_iter().fold(f64::INFINITY, f64::min), swarm)
+}
+
+#[test]
+fn six_motors_cross_within_50_micrometres_and_an_eighth_of_any_fixed_damping() {
+    let (fixed, swarm) = peaks(true, 0.0);
+    assert!(swarm < 0.05 && swarm < fixed / 8.0, "{swarm} {fixed}");
+}
+
+#[test]
+fn six_motors_cross_within_300_micrometres_and_a_fifth_of_any_fixed_damping_despite_noise() {
+    let (fixed, swarm) = peaks(true, 1e-4);
+    assert!(swarm < 0.3 && swarm < fixed / 5.0, "{swarm} {fixed}");
+}
+
+#[test]
+fn three_motors_cross_within_500_micrometres_and_an_eighth_of_any_fixed_damping() {
+    let (fixed, swarm) = peaks(false, 0.0);
+    assert!(swarm < 0.5 && swarm < fixed / 8.0, "{swarm} {fixed}");
+}
+
+#[test]
+fn three_motors_cross_within_1_millimetre_and_a_fifth_of_any_fixed_damping_despite_noise() {
+    let (fixed, swarm) = peaks(false, 1e-4);
+    assert!(swarm < 1.0 && swarm < fixed / 5.0, "{swarm} {fixed}");
+}
+
+/// A sample of `examples/random_crossings.rs`.
+#[test]
+fn random_crossings_all_finish() {
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(7);
+    for k in 0..12 {
+        let crossing = Crossing::random(&PlantParameters::default(), &mut rng);
+        for (revolute_motors, limit) in [(true, 0.2), (false, 15.0)] {
+            let experiment = Experiment { length_noise: 1e-4, noise_seed: k, ..crossing.experiment(revolute_motors) };
+            for (i, scheme) in MODES.iter().enumerate() {
+                let figures = scheme.figures(&experiment);
+                assert!(figures.failure.is_none() && figures.peak.is_finite(), "{} {crossing:?}", scheme.name);
+                // the worst of 500 crossings stays below, with a margin
+                assert!(i != 5 || figures.peak * 1e3 < limit, "{} {crossing:?}", figures.peak);
+            }
+        }
+    }
+}
