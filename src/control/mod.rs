@@ -6,7 +6,6 @@
 #![forbid(unsafe_code)]
 
 mod actuation;
-mod allowed;
 mod controller;
 mod damping;
 mod estimator;
@@ -21,7 +20,6 @@ mod situation;
 mod stability;
 
 pub use actuation::{ForceDistribution, VoltageCommand, voltages};
-pub use allowed::AllowedMotion;
 pub use controller::{Controller, Diagnostics};
 pub use damping::{Damping, Mode};
 pub use estimator::{Estimate, Estimator};

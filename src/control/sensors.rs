@@ -1,7 +1,8 @@
 //! Joint sensors with the imperfections of Table 1.
 
 use nalgebra::Vector3;
-use rand_distr::{Distribution, StandardNormal, StandardUniform};
+use rand::Rng;
+use rand::distr::{Distribution, StandardUniform};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use serde::{Deserialize, Serialize};
 
@@ -110,14 +111,29 @@ impl Sensors {
             return measured;
         }
         for i in 0..3 {
-            let length_noise: f64 = StandardNormal.sample(&mut self.rng);
-            let angle_noise: f64 = StandardNormal.sample(&mut self.rng);
+            let length_noise = standard_normal(&mut self.rng);
+            let angle_noise = standard_normal(&mut self.rng);
             let length = truth.lengths[i] + self.biases[i] + p.scale * p.length_noise * length_noise;
             let angle = truth.angles[i] + p.scale * p.angle_noise * angle_noise;
             measured.lengths[i] = quantize(length, p.scale * p.length_resolution);
             measured.angles[i] = quantize(angle, p.scale * p.angle_resolution);
         }
         measured
+    }
+}
+
+/// A standard normal deviate by Marsaglia's polar method (doi:10.1137/1006063). That of rand_distr asks the
+/// platform's C library for logarithms, whose last bits differ from system to system.
+fn standard_normal(rng: &mut impl Rng) -> f64 {
+    loop {
+        let [u, v] = [(); 2].map(|()| {
+            let uniform: f64 = StandardUniform.sample(rng);
+            2.0 * uniform - 1.0
+        });
+        let square = u * u + v * v;
+        if 0.0 < square && square < 1.0 {
+            return u * (-2.0 * libm::log(square) / square).sqrt();
+        }
     }
 }
 

@@ -36,7 +36,7 @@ impl<T: Scalar> Geometry<T> {
     pub fn mean_joint_position(&self, lengths: [T; 3], angles: [T; 3]) -> Vector3<T> {
         let mut sum = Vector3::zeros();
         for i in 0..3 {
-            let (sin, cos) = (angles[i].sin(), angles[i].cos());
+            let (sin, cos) = angles[i].sine_cosine();
             sum += self.radial[i] * (self.base_radius - lengths[i] * cos);
             sum.z += lengths[i] * sin;
         }

@@ -80,7 +80,7 @@ impl<T: Scalar> Limb<T> {
 
     /// The angle theta_i, rad.
     pub fn angle(&self) -> T {
-        self.sin.atan2(self.cos)
+        self.sin.angle_beside(self.cos)
     }
 
     /// Motions of all three limbs.

@@ -71,7 +71,7 @@ impl<T: Scalar> ExponentialCoefficients<T> {
 
     fn closed_form(u: T) -> Self {
         let t = u.sqrt();
-        let (sin, cos) = (t.sin(), t.cos());
+        let (sin, cos) = t.sine_cosine();
         let two = constant::<T>(2.0);
         let a = sin / t;
         let b = (T::one() - cos) / u;
@@ -93,7 +93,7 @@ pub fn rotation_vector<T: Scalar>(r: &Matrix3<T>) -> Vector3<T> {
         return sine_axis;
     }
     let sin = square.sqrt();
-    sine_axis * (sin.atan2(half * (r.trace() - T::one())) / sin)
+    sine_axis * (sin.angle_beside(half * (r.trace() - T::one())) / sin)
 }
 
 #[cfg(test)]
