@@ -1,6 +1,6 @@
 //! Damping factors and the damped acceleration in matrix form.
 
-use nalgebra::{Matrix6, Vector6};
+use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
 use crate::scalar::{Scalar, constant};
@@ -53,19 +53,20 @@ impl<T: Scalar> Damping<T> {
     }
 
     /// The damped acceleration (4.14), m/s2, in matrix form: from J, the desired joint-side
-    /// acceleration a_d* (m/s2) and the twist q_dot (m/s). `None` if J is singular and undamped.
+    /// acceleration a_d* (m/s2) and the twist q_dot (m/s), in all `N` = 6 components or in those
+    /// `N` = 3 that the mechanism allows. `None` if J is singular and undamped.
     ///
     /// [`super::SingularBasis`] is the same by singular values (4.10), (4.15) and cheaper for many
     /// dampings; this form can be differentiated through.
-    pub fn acceleration(
+    pub fn acceleration<const N: usize>(
         &self,
-        jacobian: &Matrix6<T>,
-        desired: &Vector6<T>,
-        twist: &Vector6<T>,
+        jacobian: &SMatrix<T, N, N>,
+        desired: &SVector<T, N>,
+        twist: &SVector<T, N>,
         rho_hd: T,
-    ) -> Option<Vector6<T>> {
+    ) -> Option<SVector<T, N>> {
         let square = self.rho * self.rho;
-        let gram = jacobian.tr_mul(jacobian) + Matrix6::identity() * (square + constant(SMALLEST_SQUARE));
+        let gram = jacobian.tr_mul(jacobian) + SMatrix::identity() * (square + constant(SMALLEST_SQUARE));
         let right = jacobian.tr_mul(desired) - twist * (rho_hd * square);
         gram.cholesky().map(|factor| factor.solve(&right))
     }

@@ -6,6 +6,7 @@
 #![forbid(unsafe_code)]
 
 mod actuation;
+mod allowed;
 mod controller;
 mod damping;
 mod estimator;
@@ -20,6 +21,7 @@ mod situation;
 mod stability;
 
 pub use actuation::{ForceDistribution, VoltageCommand, voltages};
+pub use allowed::AllowedMotion;
 pub use controller::{Controller, Diagnostics};
 pub use damping::{Damping, Mode};
 pub use estimator::{Estimate, Estimator};

@@ -43,8 +43,9 @@ pub fn preview<T: SingularValues>(
     let damping = tuning.mode.fixed_damping(&tuning.fixed).unwrap_or(*found);
     let sigma_min = T::sigma_min(&situation.jacobian);
     let rho_hd = damping.rho_hd(sigma_min, *sample_time);
-    let q_ddot = damping.acceleration(&situation.jacobian, &situation.desired, &situation.twist, rho_hd)?;
-    let force = situation.generalized_force(&situation.coordinate_acceleration(&q_ddot));
+    let allowed = &situation.allowed;
+    let y = damping.acceleration(&allowed.jacobian, &allowed.desired, &allowed.twist, rho_hd)?;
+    let force = situation.generalized_force(&allowed.coordinate_acceleration(&y));
     let wanted = currents(model, &situation, &force, damping.lambda_f);
     let command = voltages(&model.motors, &situation, &wanted, &stacked_currents(measured), *sample_time);
     let fitness = match tuning.mode {

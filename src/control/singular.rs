@@ -1,9 +1,10 @@
-//! The damped acceleration in the singular basis of J.
+//! The damped acceleration in the singular basis of J on the allowed motions.
 
-use nalgebra::{Matrix3x6, Matrix6, SVector, Vector3, Vector6};
+use nalgebra::{Matrix3, Vector3};
 
 use super::damping::SMALLEST_SQUARE;
 use super::{Damping, Situation};
+use crate::mechanism::SingularValues;
 use crate::svd::Svd;
 
 /// J = U S V^T (4.9) with what (4.10) and (4.15) need of a situation: evaluating a damping is then
@@ -11,47 +12,48 @@ use crate::svd::Svd;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SingularBasis {
     /// Squares of the singular values.
-    squares: Vector6<f64>,
+    squares: Vector3<f64>,
     /// sigma_i u_i^T a_d*
-    desired: Vector6<f64>,
+    desired: Vector3<f64>,
     /// v_i^T q_dot
-    twist: Vector6<f64>,
-    right: Matrix6<f64>,
-    /// T^+ V: singular coordinates to s_ddot.
-    to_coordinates: Matrix3x6<f64>,
-    /// T^+ T_dot s_dot
+    twist: Vector3<f64>,
+    /// v_i, in the basis of the allowed twists.
+    right: Matrix3<f64>,
+    /// Singular coordinates to s_ddot.
+    to_coordinates: Matrix3<f64>,
     coordinate_bias: Vector3<f64>,
-    /// Smallest singular value, dimensionless.
+    /// Smallest singular value of the whole J, dimensionless.
     pub sigma_min: f64,
 }
 
 impl SingularBasis {
     /// Decomposes J of `situation`.
     pub fn new(situation: &Situation<f64>) -> Self {
-        let Svd { u: left, singular_values: sigma, v: right } = Svd::new(&situation.jacobian);
+        let allowed = &situation.allowed;
+        let Svd { u: left, singular_values: sigma, v: right } = Svd::new(&allowed.jacobian);
         Self {
             squares: sigma.component_mul(&sigma),
-            desired: left.tr_mul(&situation.desired).component_mul(&sigma),
-            twist: right.tr_mul(&situation.twist),
-            to_coordinates: situation.to_coordinates * right,
-            coordinate_bias: situation.coordinate_bias,
+            desired: left.tr_mul(&allowed.desired).component_mul(&sigma),
+            twist: right.tr_mul(&allowed.twist),
+            to_coordinates: allowed.to_coordinates * right,
+            coordinate_bias: allowed.coordinate_bias,
             right,
-            sigma_min: sigma[5],
+            sigma_min: f64::sigma_min(&situation.jacobian),
         }
     }
 
     /// Coordinates of q_ddot_hd (4.14) along the right singular vectors, m/s2: (4.10) and (4.15).
     #[inline]
-    fn singular_coordinates(&self, rho: f64, rho_hd: f64) -> Vector6<f64> {
+    fn singular_coordinates(&self, rho: f64, rho_hd: f64) -> Vector3<f64> {
         let square = rho * rho;
         let velocity = rho_hd * square;
-        SVector::from_fn(|i, _| {
+        Vector3::from_fn(|i, _| {
             (self.desired[i] - velocity * self.twist[i]) / (self.squares[i] + square + SMALLEST_SQUARE)
         })
     }
 
-    /// q_ddot_hd (4.14), m/s2.
-    pub fn acceleration(&self, damping: &Damping<f64>, sample_time: f64) -> Vector6<f64> {
+    /// q_ddot_hd (4.14) in the basis of the allowed twists, m/s2.
+    pub fn acceleration(&self, damping: &Damping<f64>, sample_time: f64) -> Vector3<f64> {
         self.right * self.singular_coordinates(damping.rho, damping.rho_hd(self.sigma_min, sample_time))
     }
 

@@ -1,8 +1,8 @@
 //! Everything the control law knows at a tick before a damping is chosen.
 
-use nalgebra::{Matrix3, Matrix3x6, Matrix6, Matrix6x3, Vector3, Vector6};
+use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
-use super::{Estimate, Gains, Measurement, ReferencePoint};
+use super::{AllowedMotion, Estimate, Gains, Measurement, ReferencePoint};
 use crate::dynamics::{MechanismDynamics, PlantModel, current_maps};
 use crate::mechanism::{Limb, LimbMotion, OverallJacobian, Pose, scale_twist};
 use crate::scalar::Scalar;
@@ -26,10 +26,8 @@ pub struct Situation<T> {
     /// Reference rate x_r_dot, m/s, and acceleration x_r_ddot, m/s2.
     pub reference_rate: Vector6<T>,
     pub reference_acceleration: Vector6<T>,
-    /// (T^T T)^-1 T^T, T the scaled 6x3 map from s_dot to q_dot: s_ddot = T^+ (q_ddot - T_dot s_dot).
-    pub to_coordinates: Matrix3x6<T>,
-    /// T^+ T_dot s_dot, (m, rad, rad)/s2.
-    pub coordinate_bias: Vector3<T>,
+    /// J, a_d* and q_dot on the motions that the mechanism can make.
+    pub allowed: AllowedMotion<T>,
     /// M and h at the estimated state.
     pub dynamics: MechanismDynamics<T>,
     /// Generalized friction force of the drives, (N, N.m, N.m).
@@ -81,11 +79,8 @@ impl<T: Scalar> Situation<T> {
         let acceleration_error = (reference_linear - measured.acceleration) * gains.acceleration;
         desired += jacobian.fixed_columns::<3>(0) * acceleration_error;
 
-        let mut map = Matrix6x3::zeros();
-        map.fixed_rows_mut::<3>(0).copy_from(&pose.linear_map);
-        map.fixed_rows_mut::<3>(3).copy_from(&(pose.angular_map * geometry.joint_radius));
-        let gram = map.tr_mul(&map);
-        let to_coordinates = gram.try_inverse().unwrap_or_else(Matrix3::zeros) * map.transpose();
+        let twist = scale_twist(geometry, Pose::twist(&motion));
+        let allowed = AllowedMotion::new(geometry, (&pose, &motion), &jacobian, &desired, &twist);
         let (leg_map, revolute_map) = current_maps(model, &limbs);
         let length_rates = Vector3::from_fn(|i, _| limb_motions[i].length_rate);
         let angle_rates = Vector3::from_fn(|i, _| limb_motions[i].angle_rate);
@@ -99,13 +94,12 @@ impl<T: Scalar> Situation<T> {
             s_dot,
             pose,
             jacobian,
-            twist: scale_twist(geometry, Pose::twist(&motion)),
+            twist,
             desired,
             error,
             reference_rate,
             reference_acceleration,
-            to_coordinates,
-            coordinate_bias: to_coordinates * scale_twist(geometry, Pose::twist_bias(&motion)),
+            allowed,
             dynamics: model.bodies.dynamics(&pose, &motion, &limbs, &limb_motions, &model.motors),
             friction,
             leg_map,
@@ -113,12 +107,6 @@ impl<T: Scalar> Situation<T> {
             length_rates,
             angle_rates,
         }
-    }
-
-    /// s_ddot that belongs to the scaled twist's rate `q_ddot` (m/s2).
-    #[inline]
-    pub fn coordinate_acceleration(&self, q_ddot: &Vector6<T>) -> Vector3<T> {
-        self.to_coordinates * q_ddot - self.coordinate_bias
     }
 
     /// Generalized force that s_ddot takes: M s_ddot + h + friction (4.4).
