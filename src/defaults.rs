@@ -112,6 +112,8 @@ pub const SENSOR_LENGTH_NOISE: f64 = 1.5e-4;
 pub const SENSOR_LENGTH_BIAS: f64 = 3e-3;
 pub const SENSOR_ANGLE_RESOLUTION: f64 = 0.15 * DEG;
 pub const SENSOR_ANGLE_NOISE: f64 = 0.2 * DEG;
+/// Time without a valid measurement after which the voltages are zero, s
+pub const SENSOR_TIMEOUT: f64 = 0.02;
 
 /// Default experiment of both FMUs, s
 pub const STOP_TIME: f64 = 1.4;

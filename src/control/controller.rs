@@ -11,7 +11,8 @@ use super::parameters::Tuning;
 use super::preview::{pose_errors, stacked_currents};
 use super::{
     ControlError, ControllerParameters, Damping, Estimate, Estimator, ExternalReference, Fitness, ForceDistribution,
-    Measurement, Reference, ReferencePoint, Sensors, SingularBasis, Situation, VoltageCommand, lyapunov, lyapunov_rate,
+    Measurement, Reference, ReferencePoint, SensorFaults, SensorWatch, Sensors, SingularBasis, Situation,
+    VoltageCommand, lyapunov, lyapunov_rate,
 };
 use crate::dynamics::solver::{Settings, Solver};
 use crate::dynamics::{Inputs, NOMINAL, PlantModel, PlantState, STATES, derivative};
@@ -34,12 +35,15 @@ pub struct Controller {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct Memory {
     estimator: Estimator,
+    watch: SensorWatch,
     sensors: Sensors,
     rng: Xoshiro256PlusPlus,
     /// The last optimum, from which the next search starts.
     particle: Option<[f64; 3]>,
     /// Voltages in force, V.
     voltages: [f64; 6],
+    /// See [`Controller::work`].
+    work: u64,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -115,12 +119,23 @@ pub struct Diagnostics<T = f64> {
     pub iterations: usize,
 }
 
-/// Dampings are searched as the largest times z^EXPONENT, z in [0, 1]: nearly logarithmic where it
+/// Dampings are searched as the largest times z^8, z in [0, 1]: nearly logarithmic where it
 /// matters, and zero is within reach. For delta_hd that means: no deceleration however small sigma_min is.
-const EXPONENT: i32 = 8;
+///
+/// Squared thrice: the bits of `powi` are left open by its documentation.
+fn eighth_power(z: f64) -> f64 {
+    let square = z * z;
+    let fourth = square * square;
+    fourth * fourth
+}
 
 /// The prediction over a delay of one sample; the state is known less well than this.
 const PREDICTION: Settings<STATES> = Settings { tolerance: 1e-7, nominal: NOMINAL, max_step: f64::INFINITY };
+
+/// What a tick without its search, and a right-hand side of the dynamics, cost in evaluations of the
+/// fitness, roughly.
+const WORK_OF_A_TICK: u64 = 100;
+const WORK_OF_A_DERIVATIVE: u64 = 5;
 
 impl Controller {
     /// A controller before its first tick.
@@ -145,10 +160,12 @@ impl Controller {
         sensor_rng.jump();
         let memory = Memory {
             estimator: Estimator::of(&parameters),
+            watch: SensorWatch::new(parameters.sensor_timeout, parameters.sample_time, &parameters.sensors),
             sensors: Sensors::new(parameters.sensors, sensor_rng),
             rng,
             particle: None,
             voltages: [0.0; 6],
+            work: 0,
         };
         Ok(Self { parameters, model, reference, swarm, memory })
     }
@@ -179,9 +196,45 @@ impl Controller {
         &self.parameters
     }
 
-    /// Takes `voltages` (V) as those in force until the first tick's reach the motors.
-    pub fn assume_voltages(&mut self, voltages: &Vector6<f64>) {
+    /// Takes `voltages` (V) as those in force until the first tick's reach the motors, and
+    /// `measured` as valid until then.
+    pub fn assume(&mut self, voltages: &Vector6<f64>, measured: &Measurement<f64>) {
         self.memory.voltages = (*voltages).into();
+        self.memory.watch.assume(measured);
+    }
+
+    /// What all ticks so far cost, in evaluations of the fitness: a measure of time that is the same
+    /// on every machine.
+    pub fn work(&self) -> u64 {
+        self.memory.work
+    }
+
+    /// What was wrong with the sensors at the last [`watched_tick`](Self::watched_tick).
+    pub fn sensor_faults(&self) -> SensorFaults {
+        self.memory.watch.faults()
+    }
+
+    /// One [`tick`](Self::tick) under the watch of [`SensorWatch`]: measurements that are not finite
+    /// are missing, `fresh` ones may be frozen, and what lasts too long ends in zero voltages.
+    ///
+    /// # Errors
+    /// As [`tick`](Self::tick).
+    pub fn watched_tick(
+        &mut self,
+        t: f64,
+        measured: &Measurement<f64>,
+        fresh: bool,
+        external: &ReferencePoint<f64>,
+        tuning: &Tuning,
+    ) -> Result<Diagnostics, ControlError> {
+        let used = self.memory.watch.check(measured, fresh);
+        let mut diagnostics = self.tick(t, &used, external, tuning, true)?;
+        if self.memory.watch.faults().cut_off {
+            diagnostics.voltages = Vector6::zeros();
+            diagnostics.saturated = false;
+            self.memory.voltages = [0.0; 6];
+        }
+        Ok(diagnostics)
     }
 
     /// The reference `t` s after the start; `external` where it comes from outside, given `ahead` s before `t`.
@@ -209,6 +262,7 @@ impl Controller {
         tuning: &Tuning,
         delayed: bool,
     ) -> Result<Diagnostics, ControlError> {
+        self.memory.work = self.memory.work.saturating_add(WORK_OF_A_TICK);
         let measured = self.memory.sensors.read(measured);
         let estimate = self.memory.estimator.update(&self.model.geometry, &measured);
         if !(estimate.s.amax() < LARGEST_POSE && estimate.s_dot.amax().is_finite()) {
@@ -268,7 +322,7 @@ impl Controller {
 
     /// State and currents one sample ahead under the voltages in force.
     fn predict(
-        &self,
+        &mut self,
         estimate: &Estimate<f64>,
         currents: &Vector6<f64>,
     ) -> Result<(Estimate<f64>, Vector6<f64>), ControlError> {
@@ -279,7 +333,8 @@ impl Controller {
         let v = self.memory.voltages;
         let inputs =
             Inputs { v_leg: Vector3::new(v[0], v[1], v[2]), v_rev: Vector3::new(v[3], v[4], v[5]), ..Inputs::zero() };
-        Solver::default()
+        let mut solver = Solver::default();
+        solver
             .integrate(
                 |_, x| derivative(&self.model, x, &inputs),
                 &mut x,
@@ -288,18 +343,19 @@ impl Controller {
                 &PREDICTION,
             )
             .map_err(|_| ControlError::NotFinite)?;
+        self.memory.work = self.memory.work.saturating_add(WORK_OF_A_DERIVATIVE * solver.evaluations);
         let predicted = Estimate { s: x.fixed_rows::<3>(0).into(), s_dot: x.fixed_rows::<3>(3).into() };
         Ok((predicted, x.fixed_rows::<6>(6).into()))
     }
 
     /// The swarm's optimum: damping, fitness, iterations.
     fn search(&mut self, fitness: &Fitness, tuning: &Tuning) -> (Damping<f64>, f64, usize) {
-        let Memory { rng, particle, .. } = &mut self.memory;
+        let Memory { rng, particle, work, .. } = &mut self.memory;
         let largest = self.parameters.swarm.largest;
         let damping = |z: [f64; 3]| Damping {
-            rho: largest.rho * z[0].powi(EXPONENT),
-            delta_hd: largest.delta_hd * z[1].powi(EXPONENT),
-            lambda_f: largest.lambda_f * z[2].powi(EXPONENT),
+            rho: largest.rho * eighth_power(z[0]),
+            delta_hd: largest.delta_hd * eighth_power(z[1]),
+            lambda_f: largest.lambda_f * eighth_power(z[2]),
         };
         let warm_start = *particle;
         let (position, value, iterations) = match &mut self.swarm {
@@ -314,6 +370,8 @@ impl Controller {
                 (solution.position, solution.value, solution.iterations)
             }
         };
+        let evaluations = self.parameters.swarm.settings.swarm_size as u64 * (1 + iterations as u64);
+        *work = work.saturating_add(evaluations);
         if !value.is_finite() {
             return (tuning.fixed, value, iterations);
         }

@@ -73,7 +73,7 @@ impl Estimator {
         if self.gain < 1.0 && self.ticks > 0 {
             let predicted = last.s + (last.s_dot + fit.s_dot) * (0.5 * self.sample_time);
             // the mean of all fits so far, until the steady gain is reached
-            let gain = self.gain.max(1.0 / f64::from(self.ticks + 1));
+            let gain = self.gain.max(1.0 / (f64::from(self.ticks) + 1.0));
             s = predicted + (fit.s - predicted) * gain;
         }
         self.ticks = self.ticks.saturating_add(1);

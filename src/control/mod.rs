@@ -15,6 +15,7 @@ pub mod mpso;
 mod parameters;
 mod preview;
 mod reference;
+mod sensor_watch;
 mod sensors;
 mod singular;
 mod situation;
@@ -30,6 +31,7 @@ pub use parameters::{ControlError, ControllerParameters, Gains, SwarmParameters,
 pub use preview::{Start, preview};
 pub(crate) use preview::{pose_errors, stacked_currents};
 pub use reference::{ExternalReference, Profile, Reference, ReferencePoint};
+pub use sensor_watch::{CHANNELS, SensorFaults, SensorWatch};
 pub use sensors::{Measurement, SensorParameters, Sensors};
 pub use singular::SingularBasis;
 pub use situation::Situation;

@@ -43,6 +43,9 @@ pub struct ControllerParameters {
     /// The reference comes from outside.
     pub external_reference: bool,
     pub sensors: SensorParameters,
+    /// Time for which a measurement may be missing or frozen before the voltages are cut off, s;
+    /// 0: for ever.
+    pub sensor_timeout: f64,
     /// Time constant of the pose filter, s; 0: none.
     pub filter_time: f64,
     pub swarm: SwarmParameters,
@@ -107,6 +110,7 @@ impl Default for ControllerParameters {
             profile: Profile::Quintic,
             external_reference: false,
             sensors: SensorParameters::default(),
+            sensor_timeout: d::SENSOR_TIMEOUT,
             filter_time: d::FILTER_TIME,
             swarm: SwarmParameters::default(),
             seed: d::SEED as u64,
@@ -140,6 +144,7 @@ impl ControllerParameters {
         let largest = &self.swarm.largest;
         for (name, value) in [
             ("filter_time", self.filter_time),
+            ("sensor_timeout", self.sensor_timeout),
             ("rho_max", largest.rho),
             ("delta_hd_max", largest.delta_hd),
             ("lambda_f_max", largest.lambda_f),

@@ -6,6 +6,7 @@ use rand::distr::{Distribution, StandardUniform};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use serde::{Deserialize, Serialize};
 
+use super::sensor_watch::CHANNELS;
 use crate::defaults as d;
 use crate::scalar::Scalar;
 
@@ -23,6 +24,36 @@ pub struct Measurement<T> {
     pub revolute_currents: Vector3<T>,
     /// Acceleration of P, base frame, m/s2.
     pub acceleration: Vector3<T>,
+}
+
+impl Measurement<f64> {
+    /// All scalars, in the order of the fields.
+    pub fn to_array(&self) -> [f64; CHANNELS] {
+        let fields = [
+            &self.lengths,
+            &self.length_rates,
+            &self.angles,
+            &self.angle_rates,
+            &self.leg_currents,
+            &self.revolute_currents,
+            &self.acceleration,
+        ];
+        std::array::from_fn(|channel| fields[channel / 3][channel % 3])
+    }
+
+    /// The inverse of [`to_array`](Self::to_array).
+    pub fn from_array(scalars: &[f64; CHANNELS]) -> Self {
+        let vector = |k: usize| Vector3::new(scalars[3 * k], scalars[3 * k + 1], scalars[3 * k + 2]);
+        Self {
+            lengths: vector(0),
+            length_rates: vector(1),
+            angles: vector(2),
+            angle_rates: vector(3),
+            leg_currents: vector(4),
+            revolute_currents: vector(5),
+            acceleration: vector(6),
+        }
+    }
 }
 
 impl<T: Scalar> Measurement<T> {

@@ -75,6 +75,9 @@ pub struct Variable {
     /// `None` where the standard's table leaves it out (inputs, the independent variable).
     pub initial: Option<Initial>,
     pub kind: Kind,
+    /// A Real input that a host may set to NaN or infinity for want of a value: the model goes on
+    /// with the last valid one and knows that it does. Everywhere else such numbers are refused.
+    pub may_be_missing: bool,
 }
 
 /// An entry of `ModelStructure`: an unknown and the knowns it depends on, all by name.
@@ -134,6 +137,7 @@ impl Variable {
             variability: Variability::Continuous,
             initial: Some(Initial::Calculated),
             kind,
+            may_be_missing: false,
         }
     }
 
@@ -170,6 +174,11 @@ impl Variable {
         self.causality = Causality::Input;
         self.initial = None;
         self
+    }
+
+    /// An input whose value may be missing, see [`Variable::may_be_missing`].
+    pub fn measurement(self) -> Self {
+        Self { may_be_missing: true, ..self.input() }
     }
 
     pub fn output(mut self) -> Self {

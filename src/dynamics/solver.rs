@@ -38,6 +38,9 @@ pub struct Solver {
 
 /// The first step's length as a fraction of the tolerance's fifth root: a cautious start.
 const FIRST_STEP: f64 = 1e-3;
+/// Steps of one call: some seconds of work, after which the caller deserves an answer. The default
+/// plant, whose motors hold the step to about 1 ms, takes 60 000 for 100 s.
+pub const MOST_STEPS: u64 = 1_000_000;
 const SAFETY: f64 = 0.9;
 /// Largest change of the step, down and up.
 const SHRINK: f64 = 0.2;
@@ -70,7 +73,6 @@ impl Solver {
     ) -> Result<(), SolverError> {
         // offsets from `from`, so that a late start time costs no digits of the step
         let span = to - from;
-        let most_steps = 200_000 + (span * 50_000.0) as u64;
         let mut t = 0.0;
         let mut steps = 0;
         let mut step =
@@ -104,7 +106,7 @@ impl Solver {
                     return Err(SolverError::StepTooSmall { time: from + t, step });
                 }
             }
-            if steps > most_steps {
+            if steps > MOST_STEPS {
                 return Err(SolverError::TooManySteps { time: from + t, steps });
             }
         }

@@ -10,13 +10,13 @@
 
 use std::ffi::{CStr, c_char, c_int};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::OnceLock;
 
 use super::boundary::{enter, panic_message, slice, slice_mut, target, text};
 use super::call_table::Function;
 use super::co_simulation::no_such_status;
 use super::error::{CallError, CallResult};
 use super::instance::Instance;
+use super::lasting::{self, Lasting};
 use super::layout::Layout;
 use super::logger::Logger;
 use super::model::Model;
@@ -43,7 +43,7 @@ pub unsafe fn instantiate<M: Model>(
     guid: *const c_char,
     functions: *const CallbackFunctions,
     logging_on: Boolean,
-    layout: &'static OnceLock<Layout>,
+    layout: &'static Lasting<Layout>,
 ) -> Component {
     // SAFETY: the caller's promise (module documentation).
     let (name, guid, callbacks) = unsafe { (text(instance_name), text(guid), functions.as_ref().copied()) };
@@ -54,7 +54,10 @@ pub unsafe fn instantiate<M: Model>(
         Ok(Box::new(Instance::<M>::new(interface, layout, logger.clone())))
     }));
     let refusal: CallError = match instance {
-        Ok(Ok(instance)) => return Box::into_raw(instance).cast(),
+        Ok(Ok(instance)) => {
+            lasting::instance_made();
+            return Box::into_raw(instance).cast();
+        }
         Ok(Err(error)) => error,
         Err(payload) => CallError::Failed(format!("internal error: {}", panic_message(&*payload))),
     };
@@ -84,6 +87,7 @@ pub unsafe fn free_instance<M: Model>(component: Component) {
         let instance = unsafe { Box::from_raw(component.cast::<Instance<M>>()) };
         // A destructor that panics has no one to report to.
         let _ = catch_unwind(AssertUnwindSafe(|| drop(instance)));
+        lasting::instance_freed();
     }
 }
 

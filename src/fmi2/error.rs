@@ -4,9 +4,12 @@ use super::model::ModelError;
 use super::types::Status;
 use crate::description::LogCategory;
 
-/// A failed call.
+/// A call that did not simply succeed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum CallError {
+    /// `fmi2Warning`: the call did what it could, and the simulation can go on.
+    #[error("{0}")]
+    Warned(String),
     /// The call itself was wrong (order, arguments, data): `fmi2Error`. Nothing was changed and the
     /// instance stays as usable as it was.
     #[error("{0}")]
@@ -34,6 +37,7 @@ impl CallError {
     /// The status that C sees.
     pub fn status(&self) -> Status {
         match self {
+            Self::Warned(_) => Status::Warning,
             Self::Discard(_) | Self::NoSuchStatus(_) => Status::Discard,
             Self::Refused(_) | Self::Failed(_) => Status::Error,
         }
@@ -42,6 +46,7 @@ impl CallError {
     /// The category it is logged under.
     pub fn category(&self) -> LogCategory {
         match self {
+            Self::Warned(_) => LogCategory::StatusWarning,
             Self::Discard(_) | Self::NoSuchStatus(_) => LogCategory::StatusDiscard,
             Self::Refused(_) | Self::Failed(_) => LogCategory::StatusError,
         }

@@ -30,7 +30,7 @@ macro_rules! export_fmu {
             _visible: $crate::fmi2::types::Boolean,
             logging_on: $crate::fmi2::types::Boolean,
         ) -> $crate::fmi2::types::Component {
-            static LAYOUT: ::std::sync::OnceLock<$crate::fmi2::Layout> = ::std::sync::OnceLock::new();
+            static LAYOUT: $crate::fmi2::Lasting<$crate::fmi2::Layout> = $crate::fmi2::Lasting::new();
             // SAFETY: passed on to the caller.
             unsafe {
                 $crate::fmi2::api::instantiate::<$model>(

@@ -201,6 +201,8 @@ impl<M: Model> Snapshot<M> {
                 .iter()
                 .zip(&layout.reals.entries)
                 .all(|(x, entry)| x.is_finite() || (entry.calculated && (self.stale || self.mode == Mode::Error)))
+            && self.values.missing.len() == layout.reals.entries.len()
+            && self.values.missing.iter().zip(&layout.reals.entries).all(|(missing, e)| !missing || e.may_be_missing)
             && self.model.continuous_states().len() == layout.derivatives.len()
             && self.model.continuous_states().iter().all(|x| x.is_finite())
             && self.input_derivatives.len() == layout.continuous_inputs

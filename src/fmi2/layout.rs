@@ -32,6 +32,8 @@ pub struct Entry {
     pub discrete: bool,
     /// Has causality `output`.
     pub output: bool,
+    /// Numbers that are not finite stand for a missing value and are no error.
+    pub may_be_missing: bool,
 }
 
 /// The variables of one base type, by slot.
@@ -140,6 +142,7 @@ fn entry(definition: &Definition, index: usize, variable: &Variable, inputs: &mu
         initial_unknown: is_in(&definition.initial_unknowns),
         discrete,
         output: variable.causality == Causality::Output,
+        may_be_missing: variable.may_be_missing,
     }
 }
 

@@ -16,11 +16,19 @@ pub struct Values {
     pub integers: Vec<i32>,
     /// Boolean values.
     pub booleans: Vec<bool>,
+    /// By slot of the Reals: what the host set last was not finite, and `reals` holds the last value
+    /// that was. True for variables alone that [may be missing](crate::description::Variable::may_be_missing).
+    pub missing: Vec<bool>,
 }
 
 impl Clone for Values {
     fn clone(&self) -> Self {
-        Self { reals: self.reals.clone(), integers: self.integers.clone(), booleans: self.booleans.clone() }
+        Self {
+            reals: self.reals.clone(),
+            integers: self.integers.clone(),
+            booleans: self.booleans.clone(),
+            missing: self.missing.clone(),
+        }
     }
 
     /// Reuses what is allocated: every communication step copies the values.
@@ -28,16 +36,20 @@ impl Clone for Values {
         self.reals.clone_from(&source.reals);
         self.integers.clone_from(&source.integers);
         self.booleans.clone_from(&source.booleans);
+        self.missing.clone_from(&source.missing);
     }
 }
 
 impl Values {
     /// The start values of `definition`; zero or false for what has none.
     pub fn start(definition: &Definition) -> Self {
-        let mut values = Self { reals: Vec::new(), integers: Vec::new(), booleans: Vec::new() };
+        let mut values = Self { reals: Vec::new(), integers: Vec::new(), booleans: Vec::new(), missing: Vec::new() };
         for variable in &definition.variables {
             match variable.kind {
-                Kind::Real { start, .. } => values.reals.push(start.unwrap_or(0.0)),
+                Kind::Real { start, .. } => {
+                    values.reals.push(start.unwrap_or(0.0));
+                    values.missing.push(false);
+                }
                 Kind::Integer { start, .. } => values.integers.push(start.unwrap_or(0)),
                 Kind::Boolean { start } => values.booleans.push(start.unwrap_or(false)),
             }

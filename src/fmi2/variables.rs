@@ -110,22 +110,38 @@ impl<M: Model> Instance<M> {
         }
     }
 
-    /// `fmi2SetReal`: all or nothing.
+    /// `fmi2SetReal`: all or nothing, but for measurements that may be missing: these keep their
+    /// last value, the others are set, and the host is warned.
     pub(super) fn set_real(&mut self, references: &[ValueReference], values: &[f64]) -> CallResult {
         let Self { layout, now, .. } = self;
         for (&reference, &value) in references.iter().zip(values) {
             let slot = layout.settable_slot(&layout.reals, "Real", reference, now.mode)?;
-            layout.check_limits(&layout.reals.entries[slot], value)?;
+            let entry = &layout.reals.entries[slot];
+            if value.is_finite() || !entry.may_be_missing {
+                layout.check_limits(entry, value)?;
+            }
         }
+        let mut missing = None;
         for (&reference, &value) in references.iter().zip(values) {
             let slot = slot(&layout.reals, "Real", reference)?;
+            now.values.missing[slot] = !value.is_finite();
+            if !value.is_finite() {
+                missing = Some((slot, value));
+                continue;
+            }
             now.values.reals[slot] = value;
             if let Some(state) = layout.reals.entries[slot].state {
                 now.model.continuous_states_mut()[state] = value;
             }
         }
         now.stale |= !references.is_empty();
-        Ok(())
+        match missing {
+            None => Ok(()),
+            Some((slot, value)) => {
+                let (name, kept) = (layout.name(&layout.reals.entries[slot]), now.values.reals[slot]);
+                Err(CallError::Warned(format!("{name} = {value:?} counts as missing and stays {kept:?}")))
+            }
+        }
     }
 
     /// `fmi2SetInteger`: all or nothing.

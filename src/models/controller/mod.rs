@@ -3,7 +3,6 @@
 pub mod table;
 
 use std::collections::HashMap;
-use std::sync::OnceLock;
 
 use nalgebra::Vector3;
 use num_dual::Dual64;
@@ -12,12 +11,14 @@ use serde::{Deserialize, Serialize};
 use super::{descriptions, slots};
 use crate::control::mpso::{Selection, Settings};
 use crate::control::{
-    Controller as Core, ControllerParameters, Damping, Diagnostics, ExternalReference, Gains, Measurement, Mode,
-    Profile, Reference, ReferencePoint, SensorParameters, Start, SwarmParameters, Tuning, preview,
+    CHANNELS, Controller as Core, ControllerParameters, Damping, Diagnostics, ExternalReference, Gains, Measurement,
+    Mode, Profile, Reference, ReferencePoint, SensorFaults, SensorParameters, Start, SwarmParameters, Tuning, preview,
 };
-use crate::description::Definition;
+use crate::description::{Definition, VariableType};
 use crate::dynamics::{MechanismParameters, PlantModel};
-use crate::fmi2::{Direction, EventUpdate, Experiment, Log, Model, ModelError, ModelResult, StepInputs, Values};
+use crate::fmi2::{
+    Direction, EventUpdate, Experiment, Lasting, Log, Model, ModelError, ModelResult, StepInputs, Values,
+};
 use crate::scalar::Scalar;
 
 /// The controller and its clock.
@@ -35,6 +36,10 @@ pub struct Controller {
 /// times drift by rounding.
 const DUE: f64 = 1e-6;
 
+/// Work (see [`Core::work`]) of one call: half a minute at most, after which the host deserves an
+/// answer. The default controller needs less than three quarters of it for 100 s.
+const MOST_WORK: u64 = 100_000_000;
+
 /// Slots of the variables that the glue touches.
 struct Slots {
     /// First of d1..3, d1_dot..3, theta, theta_dot, i_leg, i_rev, a_x..z, ref_*.
@@ -44,6 +49,7 @@ struct Slots {
     iterations: usize,
     saturated: usize,
     in_singular_region: usize,
+    sensor_fault: usize,
     revolute_motors: usize,
     reals: HashMap<String, usize>,
     integers: HashMap<&'static str, usize>,
@@ -68,7 +74,7 @@ const INTEGERS: [&str; 7] =
     ["computation_delay", "swarm_size", "max_iterations", "stall_iterations", "seed", "reference_mode", "profile"];
 
 fn table() -> &'static (Definition, Slots) {
-    static TABLE: OnceLock<(Definition, Slots)> = OnceLock::new();
+    static TABLE: Lasting<(Definition, Slots)> = Lasting::new();
     TABLE.get_or_init(|| {
         let definition = table::definition();
         let real = |name: &str| slots::real(&definition, name);
@@ -90,6 +96,7 @@ fn table() -> &'static (Definition, Slots) {
             iterations: slots::integer(&definition, "mpso_iterations"),
             saturated: slots::boolean(&definition, "saturated"),
             in_singular_region: slots::boolean(&definition, "in_singular_region"),
+            sensor_fault: slots::boolean(&definition, "sensor_fault"),
             revolute_motors: slots::boolean(&definition, "revolute_motors"),
             reals: slots::real_parameters(&definition),
             integers: INTEGERS.map(|name| (name, slots::integer(&definition, name))).into(),
@@ -123,6 +130,7 @@ fn parameters(values: &Values) -> ControllerParameters {
             angle_noise: real("sensor_angle_noise"),
             length_bias: real("sensor_length_bias"),
         },
+        sensor_timeout: real("sensor_timeout"),
         filter_time: real("filter_time"),
         swarm: SwarmParameters {
             settings: Settings {
@@ -187,6 +195,42 @@ fn inputs_from<T: Scalar>(at: impl Fn(usize) -> T) -> (Measurement<T>, Reference
     (measurement, ReferencePoint { position: vector(7), rate: vector(8), acceleration: vector(9) })
 }
 
+/// `measured` with NaN for what the host could not provide.
+fn with_gaps(values: &Values, measured: &Measurement<f64>) -> Measurement<f64> {
+    let first = table().1.inputs;
+    let mut channels = measured.to_array();
+    for (channel, missing) in channels.iter_mut().zip(&values.missing[first..]) {
+        if *missing {
+            *channel = f64::NAN;
+        }
+    }
+    Measurement::from_array(&channels)
+}
+
+/// Tells of faults that have come or gone.
+fn report(before: SensorFaults, now: SensorFaults, log: &mut dyn Log) {
+    let (definition, slots) = table();
+    let names = |channels: u32| -> String {
+        let reals = definition.variables.iter().filter(|v| v.variable_type() == VariableType::Real).skip(slots.inputs);
+        let names = reals.take(CHANNELS).enumerate().filter(|(channel, _)| channels & (1 << channel) != 0);
+        names.map(|(_, variable)| variable.name.as_str()).collect::<Vec<_>>().join(", ")
+    };
+    let missing = now.missing & !before.missing;
+    if missing != 0 {
+        log.warning(&format!("sensor fault: {} missing, the last valid measurement is used", names(missing)));
+    }
+    let frozen = now.frozen & !before.frozen;
+    if frozen != 0 {
+        log.warning(&format!("sensor fault: {} frozen, although its rate says that it moves", names(frozen)));
+    }
+    if now.cut_off && !before.cut_off {
+        log.warning("sensor fault: it has lasted for sensor_timeout, the voltages are zero");
+    }
+    if before.any() && !now.any() {
+        log.event("sensor fault: all measurements are valid again");
+    }
+}
+
 /// The Real outputs in the table's order, in consecutive slots.
 fn real_outputs<T: Scalar>(d: &Diagnostics<T>) -> [T; 22] {
     let v = &d.voltages;
@@ -217,13 +261,14 @@ fn real_outputs<T: Scalar>(d: &Diagnostics<T>) -> [T; 22] {
     ]
 }
 
-fn write(values: &mut Values, d: &Diagnostics) {
+fn write(values: &mut Values, d: &Diagnostics, sensor_fault: bool) {
     let slots = &table().1;
     let outputs = real_outputs(d);
     values.reals[slots.outputs..slots.outputs + outputs.len()].copy_from_slice(&outputs);
     values.integers[slots.iterations] = i32::try_from(d.iterations).unwrap_or(i32::MAX);
     values.booleans[slots.saturated] = d.saturated;
     values.booleans[slots.in_singular_region] = d.sigma_min < d.damping.delta_hd;
+    values.booleans[slots.sensor_fault] = sensor_fault;
 }
 
 impl Controller {
@@ -232,15 +277,49 @@ impl Controller {
         self.start_time + self.tick as f64 * self.sample_time
     }
 
-    /// Makes the due tick with these inputs.
-    fn make_tick(&mut self, values: &mut Values, inputs: (Measurement<f64>, ReferencePoint<f64>)) -> ModelResult {
+    /// Makes the due tick with these inputs, `fresh` if the host may have set them since the last.
+    fn make_tick(
+        &mut self,
+        values: &mut Values,
+        (measured, external): (Measurement<f64>, ReferencePoint<f64>),
+        fresh: bool,
+        log: &mut dyn Log,
+    ) -> ModelResult {
         let core = self.core.as_mut().ok_or_else(not_initialized)?;
         let t = self.tick as f64 * self.sample_time;
+        let before = core.sensor_faults();
+        let measured = with_gaps(values, &measured);
         let diagnostics = core
-            .tick(t, &inputs.0, &inputs.1, &tuning(values), true)
+            .watched_tick(t, &measured, fresh, &external, &tuning(values))
             .map_err(|error| ModelError::Discard(error.to_string()))?;
-        write(values, &diagnostics);
+        let faults = core.sensor_faults();
+        if faults != before {
+            report(before, faults, log);
+        }
+        write(values, &diagnostics, faults.any());
         self.tick += 1;
+        Ok(())
+    }
+
+    /// Makes the ticks for which `is_due`, with the inputs at their time.
+    fn make_ticks(
+        &mut self,
+        values: &mut Values,
+        is_due: impl Fn(&Self) -> bool,
+        inputs: impl Fn(&Values, f64) -> (Measurement<f64>, ReferencePoint<f64>),
+        log: &mut dyn Log,
+    ) -> ModelResult {
+        let first = self.tick;
+        let work = |controller: &Self| controller.core.as_ref().map_or(0, Core::work);
+        let before = work(self);
+        while is_due(self) {
+            if work(self) - before > MOST_WORK {
+                let made = self.tick - first;
+                return Err(ModelError::Discard(format!("more than {made} ticks are too much work for one call")));
+            }
+            let inputs = inputs(values, self.due());
+            self.make_tick(values, inputs, self.tick == first, log)?;
+        }
         Ok(())
     }
 
@@ -319,8 +398,9 @@ impl Model for Controller {
         let (measured, external) = inputs_from(|slot| values.reals[slot]);
         let mut preview = core.clone();
         let diagnostics = preview.tick(0.0, &measured, &external, &tuning(values), false).map_err(refuse)?;
-        core.assume_voltages(&diagnostics.voltages);
-        write(values, &diagnostics);
+        core.assume(&diagnostics.voltages, &measured);
+        let gaps = with_gaps(values, &measured).to_array().iter().any(|reading| reading.is_nan());
+        write(values, &diagnostics, gaps);
         self.core = Some(core);
         self.start_time = experiment.start_time;
         self.sample_time = parameters.sample_time;
@@ -339,14 +419,15 @@ impl Model for Controller {
         inputs: &dyn StepInputs,
         from: f64,
         to: f64,
-        _log: &mut dyn Log,
+        log: &mut dyn Log,
     ) -> ModelResult {
         // A tick at `to` belongs to the next step: the master has yet to set the inputs for it.
-        while self.due() < to - DUE * self.sample_time {
-            let t = self.due().max(from);
-            self.make_tick(values, inputs_from(|slot| inputs.at(slot, t)))?;
-        }
-        Ok(())
+        self.make_ticks(
+            values,
+            |controller| controller.due() < to - DUE * controller.sample_time,
+            |_, due| inputs_from(|slot| inputs.at(slot, due.max(from))),
+            log,
+        )
     }
 
     fn continuous_states(&self) -> &[f64] {
@@ -359,11 +440,13 @@ impl Model for Controller {
 
     fn nominals(&self, _nominals: &mut [f64]) {}
 
-    fn new_discrete_states(&mut self, values: &mut Values, time: f64, _log: &mut dyn Log) -> ModelResult<EventUpdate> {
-        while self.due() <= time + DUE * self.sample_time {
-            let inputs = inputs_from(|slot| values.reals[slot]);
-            self.make_tick(values, inputs)?;
-        }
+    fn new_discrete_states(&mut self, values: &mut Values, time: f64, log: &mut dyn Log) -> ModelResult<EventUpdate> {
+        self.make_ticks(
+            values,
+            |controller| controller.due() <= time + DUE * controller.sample_time,
+            |values, _| inputs_from(|slot| values.reals[slot]),
+            log,
+        )?;
         Ok(EventUpdate { states_changed: false, next_event_time: Some(self.due()) })
     }
 

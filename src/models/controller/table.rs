@@ -65,13 +65,13 @@ fn inputs() -> Vec<Variable> {
                 ("theta", "") => starts[3 + i],
                 _ => 0.0,
             };
-            let variable = Variable::real(name, (1 + 3 * k + i) as u32, Some(unit), &text).input().start(start);
+            let variable = Variable::real(name, (1 + 3 * k + i) as u32, Some(unit), &text).measurement().start(start);
             list.push(if let Some(display) = display { variable.display(display) } else { variable });
         }
     }
     for (i, axis) in ["x", "y", "z"].into_iter().enumerate() {
         let text = format!("Measured acceleration of P, {axis} component, for the acceleration feedback k_a");
-        list.push(Variable::real(&format!("a_{axis}"), 19 + i as u32, Some("m/s2"), &text).input().start(0.0));
+        list.push(Variable::real(&format!("a_{axis}"), 19 + i as u32, Some("m/s2"), &text).measurement().start(0.0));
     }
     let starts = [d::START_HEAVE, d::START_TILT_X, d::START_TILT_Y];
     let derivatives =
@@ -135,6 +135,9 @@ fn outputs() -> Vec<Variable> {
     list.push(Variable::integer("mpso_iterations", 100, "Iterations of the swarm at the last tick").output());
     list.push(Variable::boolean("saturated", 100, "A voltage is at its limit").output());
     list.push(Variable::boolean("in_singular_region", 101, "sigma_min is below delta_hd").output());
+    list.push(
+        Variable::boolean("sensor_fault", 102, "A measurement is missing (set to no finite number) or frozen").output(),
+    );
     list
 }
 
@@ -146,7 +149,7 @@ fn reals() -> Vec<Variable> {
         Variable::real(name, vr, unit, text).tunable().start(start).range(min, max)
     };
     let mut list = vec![
-        real(2000, "sample_time", Some("s"), d::SAMPLE_TIME, 1e-6, 10.0, "Time between ticks")
+        real(2000, "sample_time", Some("s"), d::SAMPLE_TIME, 1e-5, 10.0, "Time between ticks")
             .display("ms")
             .nominal(1e-3),
         tunable(2001, "k_p", Some("1/s2"), d::K_P, 0.0, INF, "Position gain K_P (4.5b)").nominal(1e3),
@@ -294,6 +297,17 @@ fn reals() -> Vec<Variable> {
         )
         .display("deg")
         .nominal(1e-3),
+        real(
+            2046,
+            "sensor_timeout",
+            Some("s"),
+            d::SENSOR_TIMEOUT,
+            0.0,
+            INF,
+            "Time without a valid measurement after which the voltages are zero; 0: never",
+        )
+        .display("ms")
+        .nominal(0.01),
     ]);
     list
 }

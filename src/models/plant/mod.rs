@@ -4,7 +4,6 @@ mod outputs;
 pub mod table;
 
 use std::collections::HashMap;
-use std::sync::OnceLock;
 
 use nalgebra::Vector3;
 use num_dual::Dual64;
@@ -15,7 +14,9 @@ use super::{descriptions, slots};
 use crate::description::Definition;
 use crate::dynamics::solver::{Settings, Solver};
 use crate::dynamics::{Inputs, NOMINAL, PlantModel, PlantParameters, PlantState, STATES, derivative, settled_currents};
-use crate::fmi2::{Direction, EventUpdate, Experiment, Log, Model, ModelError, ModelResult, StepInputs, Values};
+use crate::fmi2::{
+    Direction, EventUpdate, Experiment, Lasting, Log, Model, ModelError, ModelResult, StepInputs, Values,
+};
 use crate::mechanism::{Limb, Pose};
 use crate::scalar::Scalar;
 
@@ -71,7 +72,7 @@ struct Slots {
 }
 
 fn table() -> &'static (Definition, Slots) {
-    static TABLE: OnceLock<(Definition, Slots)> = OnceLock::new();
+    static TABLE: Lasting<(Definition, Slots)> = Lasting::new();
     TABLE.get_or_init(|| {
         let definition = table::definition();
         let slots = Slots {

@@ -220,7 +220,7 @@ fn parameters() -> Vec<Variable> {
             "Co-simulation solver's tolerance; 0: that of the experiment",
         )
         .nominal(1e-6),
-        real(2010, "max_step", Some("s"), 0.01, 1e-7, INF, "Co-simulation solver's largest step").nominal(1e-3),
+        real(2010, "max_step", Some("s"), 0.01, 1e-6, INF, "Co-simulation solver's largest step").nominal(1e-3),
         Variable::boolean("settled_start", 2000, "Initial currents hold the initial pose")
             .parameter()
             .start_boolean(true),
