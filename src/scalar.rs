@@ -2,7 +2,7 @@
 #![forbid(unsafe_code)]
 
 use nalgebra::RealField;
-use num_dual::Dual64;
+use num_dual::{Dual2_64, Dual64};
 
 /// A real scalar. All model equations are generic over it, so that directional derivatives are
 /// the equations themselves evaluated in dual numbers ([`num_dual::Dual64`]).
@@ -40,6 +40,17 @@ impl Scalar for Dual64 {
     fn angle_beside(self, x: Self) -> Self {
         let square = x.re * x.re + self.re * self.re;
         Self::new(libm::atan2(self.re, x.re), (x.re * self.eps - self.re * x.eps) / square)
+    }
+}
+
+/// Second derivatives, for analysis: the last bits are the platform's.
+impl Scalar for Dual2_64 {
+    fn sine_cosine(self) -> (Self, Self) {
+        nalgebra::ComplexField::sin_cos(self)
+    }
+
+    fn angle_beside(self, x: Self) -> Self {
+        RealField::atan2(self, x)
     }
 }
 
