@@ -61,12 +61,15 @@ def local(workers: int | None = None) -> Iterator[Client]:
             threads_per_worker=1,
             processes=True,
             host="127.0.0.1",
-            dashboard_address=None,
+            dashboard_address="127.0.0.1:0",
             # a worker that dies is replaced and its runs are made again: nothing to alarm anyone
             silence_logs=logging.CRITICAL,
         ) as cluster,
         Client(cluster) as client,
     ):
+        # a worker that dies while it starts takes its nanny along; this replaces both
+        count = len(cluster.workers)
+        cluster.adapt(minimum=count, maximum=count)
         yield client
 
 

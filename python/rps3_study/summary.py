@@ -144,11 +144,11 @@ def _distribution(table: pd.DataFrame, bound: float) -> Figure:
 
 
 def _influence(finished: pd.DataFrame) -> Figure:
-    """Rank correlation of the peak error with what varies, by mode."""
+    """Rank correlation of the peak error with the size of what varies, by mode."""
     causes = {f"deviation_{name}": name for name in DEVIATIONS} | {"sensor_scale": "sensor_scale"}
     modes, rows = zip(
         *(
-            (mode, [group[cause].rank().corr(group["peak_error"].rank()) for cause in causes])
+            (mode, [group[cause].abs().rank().corr(group["peak_error"].rank()) for cause in causes])
             for mode, group in _modes(finished)
         ),
         strict=True,
@@ -160,7 +160,7 @@ def _influence(finished: pd.DataFrame) -> Figure:
     axis.set_yticks(range(len(modes)), list(modes))
     for (row, column), value in np.ndenumerate(np.array(rows)):
         axis.text(column, row, f"{value:+.2f}", ha="center", va="center", fontsize="x-small")
-    figure.colorbar(image, label="rank correlation with the peak error")
+    figure.colorbar(image, label="rank correlation of\nits size with the peak error")
     return figure
 
 

@@ -97,6 +97,13 @@ def test_run_whose_process_dies_each_time_is_recorded_with_its_seed_and_reason(
         assert directory.finished() == {0}
 
 
+def test_worker_that_is_gone_for_good_is_replaced(client: Client) -> None:
+    before = set(client.nthreads())
+    client.retire_workers([min(before)])
+    client.wait_for_workers(2, timeout=120)
+    assert len(set(client.nthreads()) - before) == 1
+
+
 def test_fmus_are_extracted_once_a_worker(client: Client, archives: cluster.Archives, tmp_path: Path) -> None:
     def directories(dask_worker: object) -> list[str]:
         return sorted(str(fmu.directory) for fmu in dask_worker.plugins[archives.name].fmus)
