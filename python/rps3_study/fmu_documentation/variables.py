@@ -26,7 +26,7 @@ GROUPS: dict[str, list[tuple[str, str, str]]] = {
         ("Outputs: motor voltages", "output", r"v_"),
         ("Outputs: damping and stability", "output", r"(rho|delta_hd|lambda_f|sigma_min|lyapunov)"),
         ("Outputs: estimate, reference, errors", "output", r"(heave|tilt|err)_"),
-        ("Outputs: diagnostics", "output", r"(mpso|saturated|in_singular)"),
+        ("Outputs: diagnostics", "output", r"(mpso|saturated|in_singular|sensor_fault)"),
         (
             "Parameters: control law",
             "parameter",
