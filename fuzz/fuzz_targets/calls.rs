@@ -1,3 +1,5 @@
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| rps3_fuzz::calls(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| {
+    rps3_fuzz::calls(data);
+});

@@ -90,7 +90,11 @@ impl<M: Fmu> Caller<M> {
                     host.silenced = true;
                 }
             }
-            Function::FreeInstance => *host = Host::new(host.interface),
+            Function::FreeInstance => {
+                *host = Host::new(host.interface);
+                // gone with their instance; their addresses may come again
+                self.saved.clear();
+            }
             Function::SetupExperiment => {
                 let (tolerance, start, stop) = (numbers::any(u)?, numbers::any(u)?, numbers::any(u)?);
                 let start = if u.arbitrary()? { 0.0 } else { start };

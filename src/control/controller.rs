@@ -132,9 +132,9 @@ fn eighth_power(z: f64) -> f64 {
 /// The prediction over a delay of one sample; the state is known less well than this.
 const PREDICTION: Settings<STATES> = Settings { tolerance: 1e-7, nominal: NOMINAL, max_step: f64::INFINITY };
 
-/// What a tick without its search, and a right-hand side of the dynamics, cost in evaluations of the
-/// fitness, roughly.
-const WORK_OF_A_TICK: u64 = 100;
+/// What a tick without its search costs at least, in evaluations of the fitness, roughly.
+pub const LEAST_WORK: u64 = 100;
+/// What a right-hand side of the dynamics costs.
 const WORK_OF_A_DERIVATIVE: u64 = 5;
 
 impl Controller {
@@ -262,7 +262,7 @@ impl Controller {
         tuning: &Tuning,
         delayed: bool,
     ) -> Result<Diagnostics, ControlError> {
-        self.memory.work = self.memory.work.saturating_add(WORK_OF_A_TICK);
+        self.memory.work = self.memory.work.saturating_add(LEAST_WORK);
         let measured = self.memory.sensors.read(measured);
         let estimate = self.memory.estimator.update(&self.model.geometry, &measured);
         if !(estimate.s.amax() < LARGEST_POSE && estimate.s_dot.amax().is_finite()) {

@@ -23,7 +23,7 @@ mod stability;
 
 pub use actuation::{ForceDistribution, VoltageCommand, voltages};
 pub use allowed::AllowedMotion;
-pub use controller::{Controller, Diagnostics};
+pub use controller::{Controller, Diagnostics, LEAST_WORK};
 pub use damping::{Damping, Mode};
 pub use estimator::{Estimate, Estimator};
 pub use fitness::{Fitness, fitness_of_currents};

@@ -72,11 +72,13 @@ impl<M: Model> Instance<M> {
 
     /// `fmi2GetInteger`
     pub(super) fn get_integer(&mut self, references: &[ValueReference], out: &mut [i32]) -> CallResult {
+        let mut calculated = false;
         for &reference in references {
             let slot = slot(&self.layout.integers, "Integer", reference)?;
-            if self.now.stale && self.layout.integers.entries[slot].calculated {
-                self.refresh_for_get(false)?;
-            }
+            calculated |= self.layout.integers.entries[slot].calculated;
+        }
+        if calculated && self.now.stale {
+            self.refresh_for_get(false)?;
         }
         for (&reference, out) in references.iter().zip(out) {
             *out = self.now.values.integers[slot(&self.layout.integers, "Integer", reference)?];
@@ -86,11 +88,13 @@ impl<M: Model> Instance<M> {
 
     /// `fmi2GetBoolean`
     pub(super) fn get_boolean(&mut self, references: &[ValueReference], out: &mut [Boolean]) -> CallResult {
+        let mut calculated = false;
         for &reference in references {
             let slot = slot(&self.layout.booleans, "Boolean", reference)?;
-            if self.now.stale && self.layout.booleans.entries[slot].calculated {
-                self.refresh_for_get(false)?;
-            }
+            calculated |= self.layout.booleans.entries[slot].calculated;
+        }
+        if calculated && self.now.stale {
+            self.refresh_for_get(false)?;
         }
         for (&reference, out) in references.iter().zip(out) {
             let value = self.now.values.booleans[slot(&self.layout.booleans, "Boolean", reference)?];

@@ -8,7 +8,7 @@ use std::ptr;
 
 use rps3::control::{ControllerParameters, Mode, Tuning};
 use rps3::coupling::Experiment;
-use rps3::description::VariableType;
+use rps3::description::{Kind, VariableType};
 use rps3::dynamics::PlantParameters;
 use rps3::fmi2::types::{CallbackFunctions, Component, FmuState, Interface, LoggerCallback, Status, ValueReference};
 use rps3::fmi2::{Lasting, Layout, Model, api};
@@ -137,7 +137,19 @@ impl<M: Fmu> Slave<M> {
     pub fn set_reals(&self, values: &[(&str, f64)]) -> Status {
         let references: Vec<_> = values.iter().map(|(name, _)| Self::reference(name, VariableType::Real)).collect();
         let values: Vec<_> = values.iter().map(|(_, value)| *value).collect();
+        self.set_references(&references, &values)
+    }
+
+    /// Sets Reals by value reference.
+    pub fn set_references(&self, references: &[ValueReference], values: &[f64]) -> Status {
         call!(self, set_real(references.as_ptr(), references.len(), values.as_ptr()))
+    }
+
+    /// Reads Reals by value reference.
+    pub fn get_references(&self, references: &[ValueReference]) -> Vec<f64> {
+        let mut values = vec![f64::NAN; references.len()];
+        assert_eq!(call!(self, get_real(references.as_ptr(), references.len(), values.as_mut_ptr())), Status::Ok);
+        values
     }
 
     pub fn set_real(&self, name: &str, value: f64) -> Status {
@@ -166,15 +178,22 @@ impl<M: Fmu> Slave<M> {
         value != 0
     }
 
+    /// The start value of a Real.
+    pub fn start(&self, name: &str) -> f64 {
+        let variable = M::definition().variables.iter().find(|v| v.name == name).expect(name);
+        match variable.kind {
+            Kind::Real { start: Some(start), .. } => start,
+            _ => panic!("{name} has no start value"),
+        }
+    }
+
     /// All Reals that are outputs, in the table's order.
     pub fn outputs(&self) -> Vec<f64> {
         use rps3::description::Causality::Output;
         let variables = &M::definition().variables;
         let reals = variables.iter().filter(|v| v.causality == Output && v.variable_type() == VariableType::Real);
         let references: Vec<_> = reals.map(|v| v.value_reference).collect();
-        let mut values = vec![f64::NAN; references.len()];
-        assert_eq!(call!(self, get_real(references.as_ptr(), references.len(), values.as_mut_ptr())), Status::Ok);
-        values
+        self.get_references(&references)
     }
 
     /// Passes initialization; the outcome of its last call.
@@ -226,19 +245,31 @@ pub fn connections() -> (Vec<String>, Vec<String>) {
     )
 }
 
+/// Hands the plant's measurements to the controller.
+pub fn measure(plant: &Slave<Plant>, controller: &Slave<Controller>) {
+    let (measurements, _) = connections();
+    let measured: Vec<(&str, f64)> = measurements.iter().map(|name| (name.as_str(), plant.real(name))).collect();
+    assert_eq!(controller.set_reals(&measured), Status::Ok);
+}
+
 /// The pair, controller first, from `from` to `to` (in steps of `step` s).
 pub fn couple(plant: &Slave<Plant>, controller: &Slave<Controller>, from: u32, to: u32, step: f64) {
     let (measurements, voltages) = connections();
-    let copy_back = |names: &[String]| -> Vec<(String, f64)> {
-        names.iter().map(|name| (name.clone(), controller.real(name))).collect()
+    // value references in the plant and in the controller
+    let references = |names: &[String]| -> (Vec<ValueReference>, Vec<ValueReference>) {
+        let both = |name: &String| {
+            let of_type = VariableType::Real;
+            (Slave::<Plant>::reference(name, of_type), Slave::<Controller>::reference(name, of_type))
+        };
+        names.iter().map(both).unzip()
     };
+    let (measured, commands) = (references(&measurements), references(&voltages));
     for k in from..to {
-        let measured: Vec<(&str, f64)> = measurements.iter().map(|name| (name.as_str(), plant.real(name))).collect();
-        assert_eq!(controller.set_reals(&measured), Status::Ok);
-        assert_eq!(controller.step(f64::from(k) * step, step), Status::Ok, "{:?}", controller.take_messages());
-        let commands = copy_back(&voltages);
-        let commands: Vec<(&str, f64)> = commands.iter().map(|(name, value)| (name.as_str(), *value)).collect();
-        assert_eq!(plant.set_reals(&commands), Status::Ok);
-        assert_eq!(plant.step(f64::from(k) * step, step), Status::Ok, "{:?}", plant.take_messages());
+        let point = f64::from(k) * step;
+        let values = plant.get_references(&measured.0);
+        assert_eq!(controller.set_references(&measured.1, &values), Status::Ok);
+        assert_eq!(controller.step(point, step), Status::Ok, "{:?}", controller.take_messages());
+        assert_eq!(plant.set_references(&commands.0, &controller.get_references(&commands.1)), Status::Ok);
+        assert_eq!(plant.step(point, step), Status::Ok, "{:?}", plant.take_messages());
     }
 }

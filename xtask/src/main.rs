@@ -9,6 +9,7 @@ mod demo;
 mod describe;
 mod documentation;
 mod fmu;
+mod fuzz;
 mod instructions;
 mod library;
 mod licenses;
@@ -50,6 +51,8 @@ enum Task {
     Test(test::Options),
     /// Count the instructions of the hot paths and compare with the record
     Instructions(instructions::Options),
+    /// Run the fuzz targets under libFuzzer
+    Fuzz(fuzz::Options),
     /// Check format, lints, documentation and Python code
     Lint,
 }
@@ -64,6 +67,7 @@ fn main() -> ExitCode {
         Task::Torque => analysis::run("torque"),
         Task::Test(options) => test::run(&options),
         Task::Instructions(options) => instructions::run(&options),
+        Task::Fuzz(options) => fuzz::run(&options),
         Task::Lint => lint::run(),
     };
     match outcome {

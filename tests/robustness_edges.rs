@@ -1,0 +1,163 @@
+//! The pair of FMUs where numerics are hard: no tilt, exact singularities, end stops, stalled
+//! motors, a wrong model, very short and very long communication steps.
+
+mod common;
+
+use common::{Slave, couple};
+use rps3::defaults as d;
+use rps3::fmi2::types::Status;
+use rps3::models::{Controller, Plant};
+
+const COORDINATES: [&str; 3] = ["heave", "tilt_x", "tilt_y"];
+const SINGULAR: [f64; 3] = [d::VIA_HEAVE, d::VIA_TILT_X, d::VIA_TILT_Y];
+const LEVEL: [f64; 3] = [0.05, 0.0, 0.0];
+/// m
+const R_B: f64 = d::JOINT_SPACING / 1.732_050_807_568_877_2;
+
+/// A pair that starts at `start` and moves to `end` through `via`.
+fn pair(poses: [[f64; 3]; 3], six: bool, mode: i32) -> (Slave<Plant>, Slave<Controller>) {
+    let (plant, controller) = (Slave::<Plant>::new(), Slave::<Controller>::new());
+    plant.set_boolean("revolute_motors", six);
+    controller.set_boolean("revolute_motors", six);
+    controller.set_integer("control_mode", mode);
+    for (k, name) in COORDINATES.iter().enumerate() {
+        assert_eq!(plant.set_real(&format!("{name}_start"), poses[0][k]), Status::Ok);
+        for (point, pose) in ["start", "via", "end"].iter().zip(&poses) {
+            assert_eq!(controller.set_real(&format!("{point}_{name}"), pose[k]), Status::Ok);
+        }
+    }
+    (plant, controller)
+}
+
+fn initialize(plant: &Slave<Plant>, controller: &Slave<Controller>) {
+    plant.initialize();
+    common::measure(plant, controller);
+    controller.initialize();
+}
+
+/// Largest component of the pose error, m.
+fn pose_error(plant: &Slave<Plant>, controller: &Slave<Controller>) -> f64 {
+    let error = |name: &str| (plant.real(name) - controller.real(&format!("{name}_ref"))).abs();
+    error("heave").max(R_B * error("tilt_x")).max(R_B * error("tilt_y"))
+}
+
+fn all_finite(plant: &Slave<Plant>) -> bool {
+    plant.outputs().iter().all(|x| x.is_finite())
+}
+
+#[test]
+fn a_level_platform_is_held_and_left_and_reached() {
+    for mode in [1, 2, 3, 4] {
+        let tilted = [0.06, 0.05, -0.04];
+        for poses in [[LEVEL; 3], [LEVEL, LEVEL, tilted], [tilted, LEVEL, LEVEL]] {
+            let (plant, controller) = pair(poses, true, mode);
+            initialize(&plant, &controller);
+            couple(&plant, &controller, 0, 1200, 1e-3);
+            let error = pose_error(&plant, &controller);
+            assert!(error < 1e-3, "mode {mode}: {error} m");
+        }
+    }
+}
+
+#[test]
+fn an_exactly_singular_start_is_survived_by_every_mode_and_held_with_six_motors() {
+    for six in [true, false] {
+        for mode in [1, 2, 3, 4] {
+            let (plant, controller) = pair([SINGULAR; 3], six, mode);
+            initialize(&plant, &controller);
+            couple(&plant, &controller, 0, 300, 1e-3);
+            assert!(all_finite(&plant));
+            let error = pose_error(&plant, &controller);
+            if six && mode == 4 {
+                assert!(error < 1e-3, "{error} m");
+            }
+        }
+    }
+}
+
+#[test]
+fn motors_stalled_at_the_end_stops_draw_their_stall_current_for_a_minute() {
+    for sign in [1.0, -1.0] {
+        let plant = Slave::<Plant>::new();
+        plant.initialize();
+        for i in 1..=3 {
+            plant.set_real(&format!("v_leg{i}"), sign * d::V_MAX);
+            plant.set_real(&format!("v_rev{i}"), sign * d::V_MAX);
+        }
+        let mut late = Vec::new();
+        for k in 0..60 {
+            assert_eq!(plant.step(f64::from(k), 1.0), Status::Ok, "{:?}", plant.take_messages());
+            if k >= 30 {
+                late.push(plant.outputs());
+            }
+        }
+        assert!(late.iter().flatten().all(|x| x.is_finite()));
+        let stall = sign * d::V_MAX / d::MOTOR_RA;
+        for name in ["i_leg1", "i_leg2", "i_leg3"] {
+            // at rest to the solver's tolerance
+            assert!((plant.real(name) - stall).abs() < 1e-2, "{name} = {}", plant.real(name));
+        }
+        for name in COORDINATES {
+            assert!(plant.real(&format!("{name}_dot")).abs() < 1e-3, "{name} still moves");
+        }
+    }
+}
+
+#[test]
+fn a_model_wrong_by_a_fifth_still_crosses() {
+    let names = [
+        "plate_mass",
+        "lower_mass",
+        "upper_mass",
+        "lower_inertia",
+        "upper_inertia",
+        "motor_jm",
+        "motor_bm",
+        "motor_kt",
+        "motor_ra",
+        "motor_la",
+    ];
+    let start = [d::START_HEAVE, d::START_TILT_X, d::START_TILT_Y];
+    let end = [d::END_HEAVE, d::END_TILT_X, d::END_TILT_Y];
+    for (factor, mode) in [(0.8, 2), (1.2, 2), (0.8, 4), (1.2, 4)] {
+        let (plant, controller) = pair([start, SINGULAR, end], true, mode);
+        for name in names {
+            assert_eq!(controller.set_real(name, controller.start(name) * factor), Status::Ok);
+        }
+        initialize(&plant, &controller);
+        let mut worst = 0.0_f64;
+        for k in 0..1400 {
+            couple(&plant, &controller, k, k + 1, 1e-3);
+            worst = worst.max(pose_error(&plant, &controller));
+        }
+        println!("model x {factor}, mode {mode}: {worst:.2e} m");
+        assert!(worst < 10e-3, "model x {factor}, mode {mode}: {worst} m");
+    }
+}
+
+#[test]
+fn any_communication_step_from_a_microsecond_to_a_second_is_served() {
+    for (step, steps) in [(1e-6, 3000), (1e-5, 1000), (1e-4, 500), (1e-2, 30), (0.1, 5), (1.0, 2)] {
+        let (plant, controller) = (Slave::<Plant>::new(), Slave::<Controller>::new());
+        controller.set_integer("control_mode", 2);
+        initialize(&plant, &controller);
+        couple(&plant, &controller, 0, steps, step);
+        assert!(all_finite(&plant), "{step} s");
+        if step <= 1e-3 {
+            assert!(pose_error(&plant, &controller) < 1e-3, "{step} s");
+        }
+    }
+}
+
+#[test]
+fn work_for_one_call_ends_with_a_discard_and_not_with_a_hang() {
+    let plant = Slave::<Plant>::new();
+    assert_eq!(plant.set_real("max_step", 1e-6), Status::Ok);
+    plant.initialize();
+    assert_eq!(plant.step(0.0, 100.0), Status::Discard);
+    let controller = Slave::<Controller>::new();
+    assert_eq!(controller.set_real("sample_time", 1e-5), Status::Ok);
+    controller.set_integer("control_mode", 2);
+    controller.initialize();
+    assert_eq!(controller.step(0.0, 100.0), Status::Discard);
+}
