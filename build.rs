@@ -18,16 +18,25 @@ mod description;
 mod models {
     pub mod common_table;
     pub mod controller {
+        mod dependencies;
         pub mod table;
     }
     pub mod plant {
+        mod dependencies;
         pub mod table;
     }
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let sources =
-        ["defaults.rs", "description", "models/common_table.rs", "models/controller/table.rs", "models/plant/table.rs"];
+    let sources = [
+        "defaults.rs",
+        "description",
+        "models/common_table.rs",
+        "models/controller/dependencies.rs",
+        "models/controller/table.rs",
+        "models/plant/dependencies.rs",
+        "models/plant/table.rs",
+    ];
     println!("cargo::rerun-if-changed=build.rs");
     for source in sources {
         println!("cargo::rerun-if-changed=src/{source}");

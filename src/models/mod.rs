@@ -8,4 +8,4 @@ pub mod plant;
 mod slots;
 
 pub use controller::Controller;
-pub use plant::Plant;
+pub use plant::{Plant, TOLERANCE_MARGIN};

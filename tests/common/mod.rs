@@ -104,6 +104,11 @@ macro_rules! call {
 
 impl<M: Fmu> Slave<M> {
     pub fn new() -> Self {
+        Self::of(Interface::CoSimulation)
+    }
+
+    /// An instance for one of the interfaces.
+    pub fn of(interface: Interface) -> Self {
         let messages = Box::new(Messages::default());
         // SAFETY: Rust cannot define variadic functions; the layer passes exactly one argument, a
         // pointer, which arrives in the same place in both kinds of call on the platforms we test on.
@@ -121,7 +126,7 @@ impl<M: Fmu> Slave<M> {
             component_environment: ptr::from_ref(&*messages).cast_mut().cast(),
         };
         let guid = CString::new(M::guid()).unwrap();
-        let kind = Interface::CoSimulation as c_int;
+        let kind = interface as c_int;
         // SAFETY: C strings and callbacks that live through the call.
         let c = unsafe { api::instantiate::<M>(c"slave".as_ptr(), kind, guid.as_ptr(), &callbacks, 0, M::layout()) };
         assert!(!c.is_null());

@@ -1,5 +1,6 @@
 //! Rps3Controller: the sampled controller behind the FMI layer.
 
+mod dependencies;
 pub mod table;
 
 use std::collections::HashMap;

@@ -1,5 +1,6 @@
 //! Variable table of Rps3Controller.
 
+use super::dependencies::{dependencies, initial_dependencies};
 use crate::defaults as d;
 use crate::description::{Capabilities, Causality, DefaultExperiment, Definition, Unknown, Variable};
 use crate::models::common_table::{COORDINATE_UNITS, RATE_UNITS, coordinates, mechanism_parameters, names, per_limb};
@@ -17,18 +18,16 @@ pub fn definition() -> Definition {
     let exact = [input_names.clone(), names(&parameters)].concat();
     // the internal reference runs with time
     let at_ticks = [vec!["time".to_owned()], input_names].concat();
-    let unknowns = |knowns: &[String]| {
-        outputs
-            .iter()
-            .map(|name| Unknown { variable: name.clone(), dependencies: dependencies(name, knowns) })
-            .collect()
+    let unknowns = |dependencies: fn(&str, &[String]) -> Vec<String>, knowns: &[String]| {
+        let unknown = |name: &String| Unknown { variable: name.clone(), dependencies: dependencies(name, knowns) };
+        outputs.iter().map(unknown).collect()
     };
     Definition {
         model_identifier: "Rps3Controller",
         description: "Hybrid damped resolved-acceleration control of a 3-RPS manipulator, damping tuned by a particle swarm",
-        outputs: unknowns(&at_ticks),
+        outputs: unknowns(dependencies, &at_ticks),
         derivatives: Vec::new(),
-        initial_unknowns: unknowns(&exact),
+        initial_unknowns: unknowns(initial_dependencies, &exact),
         variables,
         default_experiment: DefaultExperiment {
             start_time: 0.0,
@@ -336,19 +335,4 @@ fn integers() -> Vec<Variable> {
         integer(2006, "reference_mode", 1, 1, 2, "1 internal waypoints, 2 inputs ref_*"),
         integer(2007, "profile", 2, 1, 2, "1 constant speed of P with short blends, 2 quintic time law"),
     ]
-}
-
-/// Knowns of an output: among the inputs for `ModelStructure/Outputs`, among inputs and
-/// parameters for `InitialUnknowns`.
-fn dependencies(name: &str, knowns: &[String]) -> Vec<String> {
-    let reference = |known: &str| {
-        known == "time"
-            || known.starts_with("ref_")
-            || ["start_", "via_", "end_"].iter().any(|point| known.starts_with(point))
-            || ["reference_mode", "profile", "move_time", "computation_delay", "sample_time"].contains(&known)
-    };
-    if name.ends_with("_ref") {
-        return knowns.iter().filter(|known| reference(known)).cloned().collect();
-    }
-    knowns.to_vec()
 }

@@ -1,5 +1,6 @@
 //! Rps3Plant: the mechanism with its motors behind the FMI layer.
 
+mod dependencies;
 mod outputs;
 pub mod table;
 
@@ -90,7 +91,7 @@ fn table() -> &'static (Definition, Slots) {
 
 /// Local errors add up along a run: the solver works this much below the tolerance asked for, so
 /// that the results keep it.
-const TOLERANCE_MARGIN: f64 = 0.1;
+pub const TOLERANCE_MARGIN: f64 = 0.1;
 
 impl Plant {
     /// Parameters in force.
