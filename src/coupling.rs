@@ -138,6 +138,8 @@ impl Experiment {
         let sample_time = self.controller.sample_time;
         let ticks = libm::round(self.duration / sample_time) as u64;
         let mut inputs = Inputs::zero();
+        // as with a master that passes k times the step: its points and the ends of its steps differ by rounding
+        let mut reached = 0.0;
         for k in 0..ticks {
             let time = k as f64 * sample_time;
             if let Some(push) = &self.push {
@@ -157,7 +159,9 @@ impl Experiment {
             let v = &diagnostics.voltages;
             inputs.v_leg = Vector3::new(v[0], v[1], v[2]);
             inputs.v_rev = Vector3::new(v[3], v[4], v[5]);
-            solver.integrate(|_, x| derivative(&model, x, &inputs), &mut x, time, time + sample_time, &settings)?;
+            let end = time + sample_time;
+            solver.integrate(|_, x| derivative(&model, x, &inputs), &mut x, reached, end, &settings)?;
+            reached = end;
         }
         Ok(())
     }

@@ -5,8 +5,10 @@ mod baselines;
 mod crossing;
 mod figures;
 mod scheme;
+mod trajectory;
 
 pub use baselines::{PlatformComputedTorque, VariableDamping};
 pub use crossing::Crossing;
 pub use figures::{Distribution, Figures};
 pub use scheme::{BASELINES, Law, MODES, Scheme};
+pub use trajectory::{Sample, trajectory};

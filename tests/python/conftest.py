@@ -1,14 +1,19 @@
 """Fixtures: the packaged FMUs, from the directory in RPS3_DIST (default: dist/)."""
 
+import csv
+import io
 import os
 import shutil
+import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 from playwright.sync_api import Page, sync_playwright
 from rps3_study.fmu import Fmu, Value, extracted
 
+pytest_plugins = ["master_results"]
 ROOT = Path(__file__).resolve().parents[2]
 IDENTIFIERS = ("Rps3Plant", "Rps3Controller")
 # software rendering: WebGL without a graphics card; no sandbox: it does not start for root
@@ -54,6 +59,15 @@ def fmu(request: pytest.FixtureRequest, fmus: dict[str, Fmu]) -> Fmu:
 def settings(fmu: Fmu) -> dict[str, Value]:
     """Parameters with which the FMU at hand runs fast and without random numbers."""
     return {"control_mode": 2} if "control_mode" in fmu.variables else {}
+
+
+@pytest.fixture(scope="session")
+def native() -> dict[str, np.ndarray]:
+    """The default crossing of the core coupled without FMI, by variable: examples/trajectory.rs."""
+    command = ["cargo", "run", "--quiet", "--package", "rps3", "--example", "trajectory"]
+    text = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    header, *rows = csv.reader(io.StringIO(text))
+    return dict(zip(header, np.array(rows, dtype=float).T, strict=True))
 
 
 @pytest.fixture

@@ -19,6 +19,7 @@ def final_outputs(plant: Fmu, step: float, stop: float) -> dict[str, float]:
         return instance.get(plant.names("output"))
 
 
+@pytest.mark.master("FMPy", "CS")
 def test_fmpy_runs_the_default_experiment(fmu: Fmu, settings: dict[str, Value]) -> None:
     result = simulate_fmu(str(fmu.archive), fmi_type="CoSimulation", start_values=settings)
     assert result["time"][-1] == pytest.approx(float(fmu.description.defaultExperiment.stopTime))

@@ -58,6 +58,7 @@ def assert_close(analytic: np.ndarray, numeric: np.ndarray, unknowns: list[str])
     )
 
 
+@pytest.mark.master("FMPy", "directional derivatives")
 @pytest.mark.parametrize("index", range(12))
 def test_derivatives_by_states_equal_central_differences(plant: Fmu, index: int) -> None:
     instance, x = moving(plant)
@@ -89,6 +90,7 @@ def test_derivatives_by_inputs_equal_central_differences(plant: Fmu) -> None:
             assert_close(analytic, (values[0] - values[1]) / (2 * step), unknowns)
 
 
+@pytest.mark.master("FMPy", "output derivatives")
 def test_output_derivatives_are_the_slopes_of_outputs(plant: Fmu) -> None:
     step, names = 1e-5, ["heave", "p_x", "d1", "theta2", "i_leg1", "w_x", "energy"]
     with Instance(plant) as instance:

@@ -9,6 +9,7 @@ from rps3_study.fmu import Fmu
 SETTABLE = ("input", "parameter")
 
 
+@pytest.mark.master("FMPy", "validation")
 def test_fmpy_finds_no_problem(fmu: Fmu) -> None:
     assert validate_fmu(str(fmu.archive)) == []
 

@@ -21,6 +21,7 @@ def run(plant: Fmu, stop: float, **options: object) -> np.ndarray:
     )
 
 
+@pytest.mark.master("FMPy", "ME, variable step")
 def test_cvode_and_the_built_in_solver_agree(plant: Fmu) -> None:
     own = run(plant, 0.1, fmi_type="CoSimulation", relative_tolerance=1e-8, output_interval=1e-3)
     cvode = run(plant, 0.1, fmi_type="ModelExchange", solver="CVode", relative_tolerance=1e-8, output_interval=1e-3)
@@ -30,6 +31,7 @@ def test_cvode_and_the_built_in_solver_agree(plant: Fmu) -> None:
         np.testing.assert_allclose(cvode[name][-1], own[name][-1], atol=1e-6 * scale, rtol=0, err_msg=name)
 
 
+@pytest.mark.master("FMPy", "ME, Euler")
 def test_euler_converges_to_the_built_in_solver_with_order_one(plant: Fmu) -> None:
     own = run(plant, 0.01, fmi_type="CoSimulation", relative_tolerance=1e-10, output_interval=1e-3)
     coarse, fine = (
@@ -41,6 +43,7 @@ def test_euler_converges_to_the_built_in_solver_with_order_one(plant: Fmu) -> No
         assert ratio == pytest.approx(2.0, abs=0.1), name
 
 
+@pytest.mark.master("FMPy", "ME, time events")
 def test_controller_has_equal_outputs_at_its_time_events_and_its_co_simulation_ticks(controller: Fmu) -> None:
     outputs, ticks = controller.names("output"), 50
     with Instance(controller) as cs, ModelInstance(controller) as me:

@@ -29,6 +29,7 @@ def test_replay_from_a_saved_state_is_bit_identical(fmu: Fmu, settings: dict[str
         instance.slave.freeFMUstate(state)
 
 
+@pytest.mark.master("FMPy", "FMU state, serialized")
 def test_serialized_state_continues_bit_identically_in_another_instance(fmu: Fmu, settings: dict[str, Value]) -> None:
     with Instance(fmu, "first") as one, Instance(fmu, "second") as two:
         one.initialize(settings)

@@ -15,8 +15,21 @@ pub fn cargo(arguments: &[&str]) -> Command {
         && let Some(directory) = setup::libclang()
     {
         command.env("LIBCLANG_PATH", directory);
+        // PyPI's libclang comes without the compiler's own headers, such as stddef.h
+        if std::env::var_os("BINDGEN_EXTRA_CLANG_ARGS").is_none()
+            && let Some(headers) = compiler_headers()
+        {
+            command.env("BINDGEN_EXTRA_CLANG_ARGS", format!("-I{headers}"));
+        }
     }
     command
+}
+
+/// Where the C compiler, if it is gcc or clang, has its own headers.
+fn compiler_headers() -> Option<String> {
+    let output = Command::new("cc").arg("-print-file-name=include").output().ok()?;
+    let path = String::from_utf8(output.stdout).ok()?.trim().to_owned();
+    std::path::Path::new(&path).is_absolute().then_some(path)
 }
 
 /// Runs a command that inherits the terminal.

@@ -14,6 +14,7 @@ mod instructions;
 mod library;
 mod licenses;
 mod lint;
+mod masters;
 mod package;
 mod platform;
 mod python;
@@ -47,6 +48,8 @@ enum Task {
     Atlas,
     /// Inverse dynamics of the crossing: dist/analysis/torque.csv and .png
     Torque,
+    /// Run the FMUs in every master and renew the table in docs/masters.md
+    Masters,
     /// Run every test: Rust, then the packaged FMUs through Python
     Test(test::Options),
     /// Count the instructions of the hot paths and compare with the record
@@ -65,6 +68,7 @@ fn main() -> ExitCode {
         Task::Demo(options) => demo::run(&options),
         Task::Atlas => analysis::run("atlas", &["modelDescription/Rps3Controller.xml"]),
         Task::Torque => analysis::run("torque", &[]),
+        Task::Masters => masters::run(),
         Task::Test(options) => test::run(&options),
         Task::Instructions(options) => instructions::run(&options),
         Task::Fuzz(options) => fuzz::run(&options),

@@ -5,7 +5,7 @@ use std::time::Instant;
 use anyhow::{Result, bail};
 use clap::Args;
 
-use crate::{command, instructions, package, python, setup, workspace};
+use crate::{command, instructions, masters, package, python, setup, workspace};
 
 /// Options of `test`.
 #[derive(Debug, Args)]
@@ -23,19 +23,25 @@ pub struct Options {
 pub fn run(options: &Options) -> Result<()> {
     let start = Instant::now();
     setup::run()?;
-    let (rust_passed, results) =
-        command::tee(&mut command::cargo(&["test", "--workspace", "--no-fail-fast"]), |line| {
-            line.starts_with("test result:")
-        })?;
+    let is_result = |line: &str| line.starts_with("test result:");
+    let (rust_passed, mut results) =
+        command::tee(&mut command::cargo(&["test", "--workspace", "--no-fail-fast"]), is_result)?;
     let instructions = instructions::run(&instructions::Options::default());
     package::run(&package::Options::default())?;
+    let found = masters::clear_results()?;
+    let (masters_passed, of_masters) = command::tee(&mut masters::rust_masters(&found), is_result)?;
+    results.extend(of_masters);
     let mut pytest = python::command(&["-m", "pytest", "tests/python", "--color=no", "-ra"]);
-    pytest.env("RPS3_DIST", workspace::dist()).args(&options.pytest);
+    pytest.env("RPS3_DIST", workspace::dist()).env("RPS3_RESULTS", &found).args(&options.pytest);
     let (python_passed, summary) = command::tee(&mut pytest, |line| line.starts_with('=') && line.contains(" in "))?;
     let python_summary = summary.last().map_or("no result", |line| line.trim_matches(['=', ' ']));
     println!("\nRust: {}; Python: {python_summary}; {} s in all", sum_up(&results), start.elapsed().as_secs());
-    if !(rust_passed && python_passed) {
+    if !(rust_passed && masters_passed && python_passed) {
         bail!("tests failed");
+    }
+    // a selection of tests says little about the page
+    if options.pytest.is_empty() {
+        masters::check(&found)?;
     }
     instructions
 }
