@@ -1,0 +1,15 @@
+-- The default crossing in OMSimulator, from the package that annotate.py prepares. Not run by this project, see README.md.
+oms_setTempDirectory("./temp/")
+oms_importFile("Rps3.ssp")
+oms_setResultFile("Rps3", "Rps3_res.csv")
+oms_setStartTime("Rps3", 0.0)
+oms_setStopTime("Rps3", 1.4)
+oms_setFixedStepSize("Rps3.Rps3", 1e-3)
+oms_instantiate("Rps3")
+-- values are exchanged between steps: the controller plans for the sample that this costs
+oms_setInteger("Rps3.Rps3.controller.computation_delay", 1)
+oms_initialize("Rps3")
+oms_simulate("Rps3")
+print("heave: " .. oms_getReal("Rps3.Rps3.plant.heave") .. " m")
+oms_terminate("Rps3")
+oms_delete("Rps3")
