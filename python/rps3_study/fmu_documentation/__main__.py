@@ -1,4 +1,4 @@
-"""Writes the documentation of both FMUs: `python -m rps3_study.fmu_documentation`."""
+"""Writes documentation and reference results of both FMUs: `python -m rps3_study.fmu_documentation`."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rps3_study.couple import run_crossing
 from rps3_study.fmu import extracted
-from rps3_study.fmu_documentation import icon, page, reference_run
+from rps3_study.fmu_documentation import icon, page, reference_results, reference_run
 from rps3_study.fmu_documentation.licenses import Crate
 from rps3_study.geometry import Geometry
 
@@ -33,6 +33,7 @@ def main() -> None:
             (directory / "documentation").mkdir(parents=True, exist_ok=True)
             index = page.render(fmu, frames, reference_run.drawn(fmu, run, geometry), crates)
             (directory / "documentation" / "index.html").write_text(index, encoding="utf-8", newline="\n")
+            reference_results.write(fmu, run, directory)
             icon.draw(directory / "model.png", run, geometry, closed_loop=fmu is controller)
 
 
