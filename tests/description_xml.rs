@@ -138,6 +138,21 @@ fn both_interfaces_claim_what_works() {
 }
 
 #[test]
+fn who_serializes_states_can_get_and_set_them() {
+    for description in ALL {
+        let [access, serialization] =
+            ["canGetAndSetFMUstate", "canSerializeFMUstate"].map(|flag| attributes(description.xml, flag));
+        assert_eq!(access.len(), 2, "for each interface");
+        assert!(
+            access
+                .iter()
+                .zip(&serialization)
+                .all(|(access, serialization)| { *serialization == "false" || *access == "true" })
+        );
+    }
+}
+
+#[test]
 fn nothing_is_written_that_importers_stumble_over() {
     for description in ALL {
         let xml = description.xml;

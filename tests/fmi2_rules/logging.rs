@@ -90,6 +90,14 @@ fn a_hash_in_a_message_is_escaped_and_a_percent_sign_is_no_format() {
 }
 
 #[test]
+fn the_format_is_percent_s_and_the_category_never_null() {
+    // the host's logger asserts both for every message; here is one of each category
+    let host = Host::new(CoSimulation);
+    let categories = categories_of_everything(&host);
+    assert!(!categories.is_empty() && categories.iter().all(|category| !category.is_empty()));
+}
+
+#[test]
 fn every_category_in_use_is_declared_in_the_description() {
     let xml = rps3::models::descriptions::PLANT.xml;
     for category in rps3::description::LogCategory::ALL {

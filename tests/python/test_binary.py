@@ -1,12 +1,32 @@
 """The shared library and its model description tell the same."""
 
+import ctypes
+from pathlib import Path
+
 import pytest
 from conftest import ROOT
-from fmpy import fmi2
+from fmpy import fmi2, platform, sharedLibraryExtension
 from fmpy.fmi1 import FMICallException
 from rps3_study.fmu import Fmu, Instance, ModelInstance, Value
 
 KINDS = [Instance, ModelInstance]
+
+# Sections 2.1, 3.2 and 4.2 of the standard.
+COMMON = """
+    GetTypesPlatform GetVersion SetDebugLogging Instantiate FreeInstance SetupExperiment EnterInitializationMode
+    ExitInitializationMode Terminate Reset GetReal GetInteger GetBoolean GetString SetReal SetInteger SetBoolean
+    SetString GetFMUstate SetFMUstate FreeFMUstate SerializedFMUstateSize SerializeFMUstate DeSerializeFMUstate
+    GetDirectionalDerivative
+"""
+MODEL_EXCHANGE = """
+    EnterEventMode NewDiscreteStates EnterContinuousTimeMode CompletedIntegratorStep SetTime SetContinuousStates
+    GetDerivatives GetEventIndicators GetContinuousStates GetNominalsOfContinuousStates
+"""
+CO_SIMULATION = """
+    SetRealInputDerivatives GetRealOutputDerivatives DoStep CancelStep GetStatus GetRealStatus GetIntegerStatus
+    GetBooleanStatus GetStringStatus
+"""
+FUNCTIONS = [f"fmi2{name}" for name in (COMMON + MODEL_EXCHANGE + CO_SIMULATION).split()]
 
 
 def starts(fmu: Fmu) -> dict[str, Value]:
@@ -14,6 +34,23 @@ def starts(fmu: Fmu) -> dict[str, Value]:
     convert = {"Real": float, "Integer": int, "Boolean": lambda text: text in ("true", True)}
     names = fmu.names("input") + fmu.names("parameter")
     return {name: convert[fmu.variables[name].type](fmu.variables[name].start) for name in names}
+
+
+def library(fmu: Fmu) -> Path:
+    """The shared library for this platform."""
+    name = f"{fmu.description.coSimulation.modelIdentifier}{sharedLibraryExtension}"
+    return fmu.directory / "binaries" / platform / name
+
+
+def test_library_is_named_after_the_model_identifier(fmu: Fmu) -> None:
+    assert fmu.description.coSimulation.modelIdentifier == fmu.description.modelExchange.modelIdentifier
+    assert library(fmu).is_file()
+
+
+def test_all_44_functions_are_exported_even_those_that_do_nothing(fmu: Fmu) -> None:
+    assert len(FUNCTIONS) == 44
+    loaded = ctypes.CDLL(str(library(fmu)))
+    assert [name for name in FUNCTIONS if not hasattr(loaded, name)] == []
 
 
 @pytest.mark.parametrize("kind", KINDS)
