@@ -144,7 +144,7 @@ fn outputs_of_the_controller_depend_on_the_declared_inputs_and_no_others() {
         set_inputs(&probe, &mut dice);
         let positions = ["d1", "d2", "d3", "theta1", "theta2", "theta3"].into_iter().zip(START_MEASUREMENTS);
         positions.for_each(|(name, value)| probe.set(named(definition, name), value));
-        let mut tick = || {
+        let tick = || {
             let next = probe.event()?;
             let values = probe.get(&unknowns);
             probe.enter_event(next);
