@@ -49,7 +49,7 @@ enum Task {
     /// Inverse dynamics of the crossing: dist/analysis/torque.csv and .png
     Torque,
     /// Run the FMUs in every master and renew the table in docs/masters.md
-    Masters,
+    Masters(masters::Options),
     /// Run every test: Rust, then the packaged FMUs through Python
     Test(test::Options),
     /// Count the instructions of the hot paths and compare with the record
@@ -68,7 +68,7 @@ fn main() -> ExitCode {
         Task::Demo(options) => demo::run(&options),
         Task::Atlas => analysis::run("atlas", &["modelDescription/Rps3Controller.xml"]),
         Task::Torque => analysis::run("torque", &[]),
-        Task::Masters => masters::run(),
+        Task::Masters(options) => masters::run(&options),
         Task::Test(options) => test::run(&options),
         Task::Instructions(options) => instructions::run(&options),
         Task::Fuzz(options) => fuzz::run(&options),

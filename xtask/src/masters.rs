@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
+use clap::Args;
 use serde::Deserialize;
 
 use crate::{command, package, python, setup, workspace};
@@ -26,11 +27,19 @@ struct Finding {
     bound: Option<f64>,
 }
 
+/// Options of `masters`.
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Compare the page with the results instead of writing it
+    #[arg(long)]
+    check: bool,
+}
+
 /// Runs the tests of all masters with freshly packaged FMUs and writes their results into docs/masters.md.
 ///
 /// # Errors
-/// When something cannot be built or a test fails.
-pub fn run() -> Result<()> {
+/// When something cannot be built or a test fails, or when the page is to be checked and differs.
+pub fn run(options: &Options) -> Result<()> {
     setup::run()?;
     package::run(&package::Options::default())?;
     let results = clear_results()?;
@@ -38,6 +47,9 @@ pub fn run() -> Result<()> {
     let mut pytest = python::command(&["-m", "pytest", "tests/python", "-m", "master", "--color=no", "-ra"]);
     pytest.env("RPS3_DIST", workspace::dist()).env("RPS3_RESULTS", &results);
     command::run(&mut pytest)?;
+    if options.check {
+        return check(&results);
+    }
     let findings = findings(&results)?;
     if let Some(skipped) = findings.iter().find(|finding| finding.outcome == "skipped") {
         eprintln!("{} could not run on this machine: the page will say so", skipped.master);
