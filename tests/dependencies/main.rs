@@ -90,8 +90,7 @@ fn initial_unknowns_of_the_controller_depend_on_the_declared_starts_and_inputs_a
     check_initial_unknowns::<Controller>(draw_controller);
 }
 
-/// A controller with random parameters but for those `given`, after up to `most` ticks with random inputs and before the
-/// next one.
+/// A controller with random parameters but for those `given`, before one of its first four ticks; whether it got there.
 fn controller_before_a_tick(probe: &Probe<Controller>, dice: &mut Dice, given: &[(&str, f64)]) -> bool {
     let definition = Controller::definition();
     probe.reset();
