@@ -1,8 +1,11 @@
 """FMU states: rollback and serialization are bit-identical."""
 
+import multiprocessing
+from pathlib import Path
+
 import pytest
 from fmpy.fmi1 import FMICallException
-from rps3_study.fmu import Fmu, Instance, Value
+from rps3_study.fmu import Fmu, Instance, Value, extracted
 
 STEP = 1e-3
 
@@ -43,6 +46,31 @@ def test_serialized_state_continues_bit_identically_in_another_instance(fmu: Fmu
         assert advance(two, 20, 30) == expected
         one.slave.freeFMUstate(state)
         two.slave.freeFMUstate(restored)
+
+
+def continued(archive: Path, settings: dict[str, Value], data: bytes) -> list[dict[str, Value]]:
+    """What follows step 20 from a serialized state, in an FMU unpacked and loaded anew."""
+    with extracted(archive) as (fmu,), Instance(fmu) as instance:
+        instance.initialize(settings)
+        state = instance.slave.deSerializeFMUstate(data)
+        instance.slave.setFMUstate(state)
+        rows = advance(instance, 20, 30)
+        instance.slave.freeFMUstate(state)
+        return rows
+
+
+@pytest.mark.parametrize("mode", [2, 4], ids=["no random numbers", "random numbers"])
+def test_serialized_state_continues_bit_identically_in_another_process(fmu: Fmu, mode: int) -> None:
+    settings: dict[str, Value] = {"control_mode": mode} if "control_mode" in fmu.variables else {}
+    with Instance(fmu) as instance:
+        instance.initialize(settings)
+        advance(instance, 0, 20)
+        state = instance.slave.getFMUstate()
+        data = instance.slave.serializeFMUstate(state)
+        expected = advance(instance, 20, 30)
+        instance.slave.freeFMUstate(state)
+    with multiprocessing.get_context("spawn").Pool(1) as other:
+        assert other.apply(continued, (fmu.archive, settings, data)) == expected
 
 
 @pytest.mark.parametrize("damage", ["truncated", "flipped", "foreign"])
