@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from fmpy.fmi1 import FMICallException
 
+from rps3_study.channel import Channel
 from rps3_study.fmu import Fmu, Instance, Message, Value
 
 Exchange = Literal["gauss-seidel", "jacobi"]
@@ -72,38 +73,45 @@ def run_crossing(
     to_controller = [name for name in controller.names("input") if name in plant.names("output")]
     plant_outputs, controller_outputs = plant.names("output"), controller.names("output")
     columns = ["time", *(f"plant.{n}" for n in plant_outputs), *(f"controller.{n}" for n in controller_outputs)]
+    measured = [columns.index(f"plant.{name}") for name in to_controller]
+    commanded = [columns.index(f"controller.{name}") for name in to_plant]
+    zeroing = np.array([(offsets or {}).get(name, 0.0) for name in to_controller])
     count = round(stop_time / step)
-    rows: list[list[Value]] = []
+    table = np.empty((count + 1, len(columns)))
+    complete = 0
     failure = None
 
-    def measured(p: Instance) -> dict[str, Value]:
-        values = p.get(to_controller)
-        return {**values, **{name: values[name] + offset for name, offset in (offsets or {}).items()}}
-
     with Instance(plant, "plant") as p, Instance(controller, "controller") as c:
+        plant_side, sensors = Channel(p, plant_outputs), Channel(c, to_controller)
+        controller_side, motors = Channel(c, controller_outputs), Channel(p, to_plant)
         try:
             p.initialize(plant_parameters, stop_time=stop_time, tolerance=tolerance)
             c.set(controller_parameters or {})
             c.setup(stop_time=stop_time)
-            c.set(measured(p))
-            c.slave.exitInitializationMode()
-            for k in range(count + 1):
+            for k, row in enumerate(table):
                 t = k * step
+                row[0] = t
+                of_plant, of_controller = np.split(row[1:], [len(plant_outputs)])
                 if disturbance is not None:
                     p.set(disturbance(t))
-                row = [t, *p.get(plant_outputs).values()]
+                plant_side.read(of_plant)
+                if k == 0:
+                    sensors.write(row[measured] + zeroing)
+                    c.slave.exitInitializationMode()
                 if k == count:
                     # there is no tick at the end: the last one's outputs still hold
-                    rows.append([*row, *c.get(controller_outputs).values()])
+                    controller_side.read(of_controller)
+                    complete += 1
                     break
-                c.set(measured(p))
+                sensors.write(row[measured] + zeroing)
                 if exchange == "jacobi":
-                    p.set(c.get(to_plant))
-                    c.step(t, step)
-                else:
-                    c.step(t, step)
-                    p.set(c.get(to_plant))
-                rows.append([*row, *c.get(controller_outputs).values()])
+                    controller_side.read(of_controller)
+                    motors.write(row[commanded])
+                c.step(t, step)
+                controller_side.read(of_controller)
+                complete += 1
+                if exchange == "gauss-seidel":
+                    motors.write(row[commanded])
                 p.step(t, step)
                 if progress is not None:
                     progress(t + step)
@@ -111,5 +119,4 @@ def run_crossing(
             errors = [m.text for m in p.messages + c.messages if m.status > 1]
             failure = " | ".join([f"{exception.args[0]}", *errors])
         messages = p.messages + c.messages
-    table = np.array(rows, dtype=float).reshape(-1, len(columns))
-    return Run({name: table[:, i] for i, name in enumerate(columns)}, failure, messages)
+    return Run({name: table[:complete, i].copy() for i, name in enumerate(columns)}, failure, messages)

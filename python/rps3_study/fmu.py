@@ -113,7 +113,7 @@ class Instance:
 
     def set(self, values: Mapping[str, Value]) -> None:
         """Sets variables by name."""
-        for type_, names in _by_type(self.fmu, values).items():
+        for type_, names in by_type(self.fmu, values).items():
             references = [self.fmu.variables[name].valueReference for name in names]
             converted = [_CONVERT[type_](values[name]) for name in names]
             getattr(self.slave, f"set{type_}")(references, converted)
@@ -122,7 +122,7 @@ class Instance:
         """Values of variables by name, in the order asked for."""
         names = list(names)
         result: dict[str, Value] = dict.fromkeys(names, 0.0)
-        for type_, group in _by_type(self.fmu, names).items():
+        for type_, group in by_type(self.fmu, names).items():
             references = [self.fmu.variables[name].valueReference for name in group]
             values = getattr(self.slave, f"get{type_}")(references)
             result.update(zip(group, map(_CONVERT[type_], values), strict=True))
@@ -165,7 +165,8 @@ _COLLECTORS: dict[int, list[Message]] = {}
 _ENVIRONMENTS = itertools.count(1)
 
 
-def _by_type(fmu: Fmu, names: Iterable[str]) -> dict[str, list[str]]:
+def by_type(fmu: Fmu, names: Iterable[str]) -> dict[str, list[str]]:
+    """Names of variables grouped by type, as FMI wants them."""
     groups: dict[str, list[str]] = {}
     for name in names:
         groups.setdefault(fmu.variables[name].type, []).append(name)

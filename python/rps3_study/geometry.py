@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from rps3_study.couple import Run
 from rps3_study.fmu import Fmu
@@ -43,6 +44,14 @@ def rotations(run: Run) -> np.ndarray:
         [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
     ]
     return np.moveaxis(np.array(rows), -1, 0)
+
+
+def reference_positions(run: Run, joint_radius: float) -> np.ndarray:
+    """Where P is to be over time, m, one row a sample: heave, and sideways what the tilt brings along."""
+    tilts = np.column_stack([run["controller.tilt_x_ref"], run["controller.tilt_y_ref"], np.zeros(run.time.size)])
+    turn = Rotation.from_rotvec(tilts).as_matrix()
+    x, y = joint_radius / 2 * (turn[:, 0, 0] - turn[:, 1, 1]), -joint_radius * turn[:, 1, 0]
+    return np.column_stack([x, y, run["controller.heave_ref"]])
 
 
 def degenerate_twists(run: Run, geometry: Geometry) -> tuple[np.ndarray, np.ndarray]:

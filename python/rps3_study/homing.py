@@ -8,41 +8,17 @@ controller's geometry says. What a wrong geometry then spoils is the mapping awa
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Self
 
 import numpy as np
 
 from rps3_study.fmu import Fmu, Instance, Value
+from rps3_study.limits import QUANTITIES, Limits
 from rps3_study.metrics import COORDINATES
 
-QUANTITIES = ("d", "theta")
 UNLIMITED: dict[str, Value] = {"d_min": 2e-3, "d_max": 1e3, "theta_min": -3.1, "theta_max": 3.1}
 SHORTEST = 0.01
 """No stop lets a limb become shorter than this, m."""
 POINTS_A_LEG = 21
-
-
-@dataclass(frozen=True)
-class Limits:
-    """Range of limb lengths (m) and limb angles (rad)."""
-
-    low: np.ndarray
-    high: np.ndarray
-
-    @classmethod
-    def of(cls, values: Mapping[str, Value]) -> Self:
-        """From parameters of the plant."""
-        low, high = ([float(values[f"{name}_{end}"]) for name in QUANTITIES] for end in ("min", "max"))
-        return cls(np.array(low), np.array(high))
-
-    def parameters(self) -> dict[str, Value]:
-        """As parameters of the plant."""
-        return {
-            f"{name}_{end}": float(value)
-            for end, side in (("min", self.low), ("max", self.high))
-            for name, value in zip(QUANTITIES, side, strict=True)
-        }
 
 
 def path(controller_parameters: Mapping[str, Value]) -> np.ndarray:

@@ -13,8 +13,7 @@ import numpy as np
 from rps3_study import design_study, plots, report_page
 from rps3_study.couple import Run
 from rps3_study.geometry import Geometry
-from rps3_study.metrics import Figures
-from rps3_study.metrics import figures as figures_of
+from rps3_study.results import Results
 from rps3_study.tasks import Task
 
 
@@ -31,46 +30,84 @@ class Case:
         """Stem of this case's file names."""
         return f"{self.task.key}-{self.variant.replace(' ', '-')}"
 
+    @property
+    def title(self) -> str:
+        """What it is, for people."""
+        return f"{self.task.title}, {self.variant}"
 
-def write(directory: Path, cases: list[Case], geometry: Geometry) -> Path:
+
+@dataclass(frozen=True)
+class PaperFigure:
+    """Counterpart of a figure in the paper."""
+
+    number: int
+    task: str
+    """Key of the task."""
+    modes: tuple[str, ...]
+
+
+PAPER_FIGURES = (
+    PaperFigure(7, "constant_speed", ("HDRAC", "HDRAC+MPSO")),
+    PaperFigure(9, "noise", ("DRAC",)),
+    PaperFigure(10, "noise", ("HDRAC", "HDRAC+MPSO")),
+)
+"""7 is a simulation; 9 and 10 are measured, for which runs with the sensors' noise stand in."""
+
+
+def write(directory: Path, cases: list[Case], geometry: Geometry, results: Results) -> Path:
     """Writes the report into `directory` and returns its HTML page; `geometry` is the plant's in all runs."""
     radius = geometry.joint_radius
     for part in ("data", "plots"):
         (directory / part).mkdir(parents=True, exist_ok=True)
+    results.write(directory / "results.json")
     markdown = ["# Crossing a direct singularity", "", _INTRODUCTION, ""]
     tables = []
     for case in cases:
-        title = f"{case.task.title}, {case.variant}"
-        header, rows = table(case, radius)
-        markdown += [f"## {title}", "", markdown_table(header, rows), ""]
-        tables.append(f'<div class="case"><h3>{html.escape(title)}</h3>\n{html_table(header, rows)}</div>')
+        header, rows = table(case, results)
+        markdown += [f"## {case.title}", "", markdown_table(header, rows), ""]
+        tables.append(f'<div class="case"><h3>{html.escape(case.title)}</h3>\n{html_table(header, rows)}</div>')
         for mode, run in case.runs.items():
             stem = f"{case.stem}-{mode.lower().replace('+', '-')}"
             _write_csv(directory / "data" / f"{stem}.csv", run)
-        for stem, panels in plots.figures(radius).items():
-            image = f"plots/{case.stem}-{stem}.svg"
-            plots.draw(directory / image, title, case.runs, panels)
-            markdown += [f"![{stem}]({image})", ""]
+        for image in _draw(directory, case, radius):
+            markdown += [f"![{Path(image).stem}]({image})", ""]
     (directory / "report.md").write_text("\n".join(markdown), encoding="utf-8")
     index = directory / "index.html"
     index.write_text(report_page.render(cases, geometry, _INTRODUCTION, tables), encoding="utf-8")
     return index
 
 
-def table(case: Case, radius: float) -> tuple[list[str], list[list[str]]]:
-    """Header and rows of a case's table, with the design study's figures where there are some."""
+def _draw(directory: Path, case: Case, radius: float) -> list[str]:
+    """Draws a case; returns the images' paths."""
+    images = []
+    for stem, panels in plots.figures(radius).items():
+        images.append(f"plots/{case.stem}-{stem}.svg")
+        plots.draw(directory / images[-1], case.title, case.runs, panels)
+    for figure in PAPER_FIGURES:
+        runs = {mode: case.runs[mode] for mode in figure.modes if mode in case.runs}
+        if case.task.key == figure.task and runs:
+            images.append(f"plots/figure-{figure.number}-{case.variant.replace(' ', '-')}.svg")
+            title = f"Counterpart of Figure {figure.number}. {case.title}"
+            plots.draw(directory / images[-1], title, runs, plots.paper_figure(radius), columns=2)
+    return images
+
+
+def table(case: Case, results: Results) -> tuple[list[str], list[list[str]]]:
+    """Header and rows of a case's table: modes, with the design study's figures where there are some, and baselines."""
     compared = case.task.key == design_study.TASK
-    header = ["mode", "peak error, mm", "rms error, mm", "peak voltage, V", "saturated, ms"]
+    header = ["scheme", "peak error, mm", "rms error, mm", "peak voltage, V", "saturated, ms"]
     header += ["peak error of the design study, mm"] if compared else []
     header += ["remarks"]
+    key = case.task.key, case.variant
     rows = []
-    for mode, run in case.runs.items():
-        result: Figures = figures_of(run, radius)
-        row = [mode, *map(_number, (result.peak_error, result.rms_error, result.peak_voltage))]
+    for scheme, result in (results.figures[key] | results.baselines.get(key, {})).items():
+        row = [scheme, *map(_number, (result.peak_error, result.rms_error, result.peak_voltage))]
         row.append(_number(1e3 * result.saturation_time))
         if compared:
-            row.append(_number(design_study.PEAK_ERROR.get((case.variant, mode), math.nan)))
-        rows.append([*row, f"ended early: {result.failure}" if result.failure else ""])
+            row.append(_number(design_study.PEAK_ERROR.get((case.variant, scheme), math.nan)))
+        remarks = ["reaches an end stop"] if result.end_stop else []
+        remarks += [f"ended early: {result.failure}"] if result.failure else []
+        rows.append([*row, "; ".join(remarks)])
     return header, rows
 
 
@@ -107,5 +144,7 @@ _INTRODUCTION = (
     "Both FMUs, coupled by FMPy at 1 kHz, controller first at each step. The pose error is the largest of the heave "
     "error and r_b times the tilt errors, r_b being the radius of the spherical joints' circle. RAC: resolved "
     "acceleration; DRAC: damped accelerations; HDRAC: damped velocities as well; fixed factors but for MPSO, which "
-    "searches them at each sample. The design study knew the pose exactly and searched a grid in place of the swarm."
+    "searches them at each sample. The other rows of the tables are what one would otherwise pick, run in process: "
+    "damping that follows the manipulability or the smallest singular value, and computed torque in the platform's own "
+    "coordinates. The design study knew the pose exactly and searched a grid in place of the swarm."
 )

@@ -14,7 +14,8 @@ from fmpy.fmi1 import FMICallException
 from rps3_study import homing
 from rps3_study.couple import Run, run_crossing
 from rps3_study.fmu import Fmu, Value
-from rps3_study.metrics import figures, joint_circle_radius, pose_error
+from rps3_study.limits import Limits
+from rps3_study.metrics import COORDINATES, figures, joint_circle_radius, pose_error
 from rps3_study.montecarlo import DEVIATIONS, Robot
 from rps3_study.sweep import Axis, grid
 from rps3_study.tasks import tasks
@@ -129,9 +130,9 @@ def _outcome(plant: Fmu, controller: Fmu, study: Study, index: int) -> Record:
 
     poses = homing.path(believed)
     positions_believed, positions = (homing.limb_positions(plant, values, poses) for values in (believed, actual))
-    limits = homing.own_limits(homing.Limits.of(nominal), positions_believed, positions)
+    limits = homing.own_limits(Limits.of(nominal), positions_believed, positions)
     actual |= limits.parameters()
-    actual |= {f"{name}_start": float(value) for name, value in zip(homing.COORDINATES, poses[0], strict=True)}
+    actual |= {f"{name}_start": float(value) for name, value in zip(COORDINATES, poses[0], strict=True)}
 
     run = run_crossing(
         plant,
@@ -145,12 +146,12 @@ def _outcome(plant: Fmu, controller: Fmu, study: Study, index: int) -> Record:
     return _figures(run, joint_circle_radius(actual["joint_spacing"]), limits)
 
 
-def _figures(run: Run, radius: float, limits: homing.Limits) -> Record:
+def _figures(run: Run, radius: float, limits: Limits) -> Record:
     result = figures(run, radius)
     return {
         "status": FINISHED if run.failure is None else FAILED,
         "reason": run.failure,
-        "end_stop": first_contact(run, limits),
+        "end_stop": limits.first_contact(run),
         "end_time": float(run.time[-1]) if run.time.size else 0.0,
         "peak_error": result.peak_error,
         "rms_error": result.rms_error,
@@ -158,18 +159,6 @@ def _figures(run: Run, radius: float, limits: homing.Limits) -> Record:
         "peak_voltage": result.peak_voltage,
         "saturation_time": result.saturation_time,
     }
-
-
-def first_contact(run: Run, limits: homing.Limits) -> str | None:
-    """The first end stop that a limb reached, and when, if any."""
-    contacts = []
-    for row, quantity in enumerate(homing.QUANTITIES):
-        for limb in (1, 2, 3):
-            values = run[f"plant.{quantity}{limb}"]
-            for end, beyond in (("min", values < limits.low[row]), ("max", values > limits.high[row])):
-                if beyond.any():
-                    contacts.append((float(run.time[beyond.argmax()]), f"{quantity}_{end} by limb {limb}"))
-    return None if not contacts else "{1} at {0:.3f} s".format(*min(contacts))
 
 
 def _starts(fmu: Fmu) -> dict[str, Value]:

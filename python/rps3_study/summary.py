@@ -79,6 +79,25 @@ def by_geometry(table: pd.DataFrame, bound: float) -> str:
     return markdown(["radii off by, %", "robots", *MODES.values()], rows)
 
 
+def facts(table: pd.DataFrame) -> str:
+    """A Markdown table of how the modes compare robot by robot, and of what decides."""
+    finished = table[table["status"] == FINISHED]
+    errors = finished.pivot(index="sample", columns="mode", values="peak_error").dropna()
+    rows: list[list[object]] = []
+    for mode in errors.columns:
+        rival = errors.drop(columns=mode).min(axis=1)
+        cells = [
+            f"{100 * (errors[mode] < errors[other]).mean():.0f}" if other != mode else "-" for other in errors.columns
+        ]
+        correlations = _correlations(finished[finished["mode"] == mode])
+        strongest = max(correlations, key=lambda cause: abs(correlations[cause]))
+        second = max(abs(value) for cause, value in correlations.items() if cause != strongest)
+        cause = f"{strongest} ({correlations[strongest]:+.2f})"
+        rows.append([MODES[mode], *cells, f"{100 * (errors[mode] < rival).mean():.0f}", cause, f"{second:.2f}"])
+    header = ["on robots, %, smaller peak error than", *(MODES[mode] for mode in errors.columns), "all others"]
+    return markdown([*header, "strongest cause (rank correlation)", "next"], rows)
+
+
 def markdown(header: list[str], rows: list[list[object]]) -> str:
     """A Markdown table, the first column to the left and the others to the right."""
     lines = [header, ["---", *["---:"] * (len(header) - 1)], *rows]
@@ -143,22 +162,24 @@ def _distribution(table: pd.DataFrame, bound: float) -> Figure:
     return figure
 
 
+def _correlations(group: pd.DataFrame) -> dict[str, float]:
+    """Rank correlation of the peak error with the size of what varies."""
+    causes = {f"deviation_{name}": name for name in DEVIATIONS} | {"sensor_scale": "sensor_scale"}
+    ranks = group["peak_error"].rank()
+    return {name: float(group[cause].abs().rank().corr(ranks)) for cause, name in causes.items()}
+
+
 def _influence(finished: pd.DataFrame) -> Figure:
     """Rank correlation of the peak error with the size of what varies, by mode."""
-    causes = {f"deviation_{name}": name for name in DEVIATIONS} | {"sensor_scale": "sensor_scale"}
-    modes, rows = zip(
-        *(
-            (mode, [group[cause].abs().rank().corr(group["peak_error"].rank()) for cause in causes])
-            for mode, group in _modes(finished)
-        ),
-        strict=True,
-    )
+    rows = {mode: _correlations(group) for mode, group in _modes(finished)}
+    modes, causes = list(rows), list(next(iter(rows.values())))
+    values = np.array([list(row.values()) for row in rows.values()])
     figure = Figure(figsize=(7.0, 3.2), layout="constrained")
     axis = figure.subplots()
-    image = axis.imshow(np.array(rows), cmap="RdBu_r", vmin=-1.0, vmax=1.0, aspect="auto")
-    axis.set_xticks(range(len(causes)), list(causes.values()), rotation=35, ha="right")
-    axis.set_yticks(range(len(modes)), list(modes))
-    for (row, column), value in np.ndenumerate(np.array(rows)):
+    image = axis.imshow(values, cmap="RdBu_r", vmin=-1.0, vmax=1.0, aspect="auto")
+    axis.set_xticks(range(len(causes)), causes, rotation=35, ha="right")
+    axis.set_yticks(range(len(modes)), modes)
+    for (row, column), value in np.ndenumerate(values):
         axis.text(column, row, f"{value:+.2f}", ha="center", va="center", fontsize="x-small")
     figure.colorbar(image, label="rank correlation of\nits size with the peak error")
     return figure

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
-from rps3_study.couple import Disturbance
+from rps3_study.couple import Run, run_crossing
 from rps3_study.fmu import Fmu, Value
 
 MODES: dict[int, str] = {1: "RAC", 2: "DRAC", 3: "HDRAC", 4: "HDRAC+MPSO"}
@@ -17,16 +17,16 @@ VARIANTS: dict[str, bool] = {"six motors": True, "three motors": False}
 
 @dataclass(frozen=True)
 class Push:
-    """A force of `force` N along z and a moment of `moment` N.m about x while |t - center| < half_width (s)."""
+    """A force of `force` N along z and a moment of `moment` N.m about x while `start` <= t < `end` (s)."""
 
     force: float
     moment: float
-    center: float
-    half_width: float
+    start: float
+    end: float
 
     def __call__(self, t: float) -> Mapping[str, float]:
         """The plant's load inputs at time t, s."""
-        on = abs(t - self.center) < self.half_width
+        on = self.start <= t < self.end
         return {"f_ext_z": self.force if on else 0.0, "m_ext_x": self.moment if on else 0.0}
 
 
@@ -37,7 +37,11 @@ class Task:
     key: str
     title: str
     parameters: Mapping[str, Value] = field(default_factory=dict)
-    disturbance: Disturbance | None = None
+    disturbance: Push | None = None
+
+
+TABLE_1: dict[str, Value] = {"sensor_scale": 1.0, "sensor_length_bias": 0.0}
+"""Resolution and repeatability of the paper's sensors; the static error is left to the robustness study."""
 
 
 def tasks(controller: Fmu) -> list[Task]:
@@ -45,11 +49,12 @@ def tasks(controller: Fmu) -> list[Task]:
     at_via: dict[str, Value] = {}
     for coordinate in ("heave", "tilt_x", "tilt_y"):
         at_via[f"end_{coordinate}"] = float(controller.variables[f"via_{coordinate}"].start)
-    crossing = Push(force=-100.0, moment=5.0, center=0.475, half_width=0.02)
-    resting = Push(force=-100.0, moment=5.0, center=1.2, half_width=0.02)
+    crossing = Push(force=-100.0, moment=5.0, start=0.455, end=0.495)
+    resting = Push(force=-100.0, moment=5.0, start=1.18, end=1.22)
     return [
         Task("smooth", "Crossing, quintic time law", {"profile": 2}),
         Task("constant_speed", "Crossing at constant speed", {"profile": 1}),
+        Task("noise", "Crossing at constant speed, sensors with the noise of Table 1", {"profile": 1, **TABLE_1}),
         Task("push", "Crossing, pushed by 100 N next to the singular pose", {"profile": 2}, crossing),
         Task("stop", "Stop at the singular pose", {"profile": 2, **at_via}),
         Task("stop_push", "Stop at the singular pose, pushed by 100 N there", {"profile": 2, **at_via}, resting),
@@ -60,3 +65,33 @@ def supported_modes(controller: Fmu) -> dict[int, str]:
     """The control modes that the FMU accepts, by the limits of its variable `control_mode`."""
     variable = controller.variables["control_mode"]
     return {mode: name for mode, name in MODES.items() if int(variable.min) <= mode <= int(variable.max)}
+
+
+def run_task(
+    plant: Fmu,
+    controller: Fmu,
+    task: Task,
+    variant: str,
+    parameters: Mapping[str, Value],
+    progress: Callable[[float], object] | None = None,
+) -> Run:
+    """Runs a task with the nominal robot.
+
+    Args:
+        plant: the Rps3Plant FMU.
+        controller: the Rps3Controller FMU.
+        task: what to do.
+        variant: a key of `VARIANTS`.
+        parameters: of the controller, besides the task's.
+        progress: as in `run_crossing`.
+    """
+    motors: dict[str, Value] = {"revolute_motors": VARIANTS[variant]}
+    return run_crossing(
+        plant,
+        controller,
+        motors,
+        {**motors, **task.parameters, **parameters},
+        stop_time=float(plant.description.defaultExperiment.stopTime),
+        disturbance=task.disturbance,
+        progress=progress,
+    )

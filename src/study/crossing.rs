@@ -57,10 +57,7 @@ impl Crossing {
         let [start, _, end] = self.waypoints.map(Vector3::from);
         (0..=CHECKS).all(|k| {
             let pose = Pose::new(geometry, &start.lerp(&end, k as f64 / CHECKS as f64));
-            Limb::all(geometry, &pose).iter().all(|limb| {
-                (plant.d_min..=plant.d_max).contains(&limb.length)
-                    && (plant.theta_min..=plant.theta_max).contains(&limb.angle())
-            })
+            within_stops(plant, &Limb::all(geometry, &pose))
         })
     }
 
@@ -72,6 +69,14 @@ impl Crossing {
         controller.mechanism.revolute_motors = revolute_motors;
         Experiment { plant, controller, ..Experiment::default() }
     }
+}
+
+/// No limb is beyond an end stop.
+pub(super) fn within_stops(plant: &PlantParameters, limbs: &[Limb<f64>; 3]) -> bool {
+    limbs.iter().all(|limb| {
+        (plant.d_min..=plant.d_max).contains(&limb.length)
+            && (plant.theta_min..=plant.theta_max).contains(&limb.angle())
+    })
 }
 
 impl Default for Crossing {

@@ -84,7 +84,7 @@ impl Scheme {
 
     /// Figures of merit of that run.
     pub fn figures(&self, experiment: &Experiment) -> Figures {
-        Figures::of(joints(experiment).joint_radius, |observe| self.run(experiment, observe))
+        Figures::of(experiment, |observe| self.run(experiment, observe))
     }
 }
 

@@ -7,14 +7,19 @@ import pytest
 from rps3_study import report
 from rps3_study.couple import Run
 from rps3_study.geometry import Geometry
-from rps3_study.metrics import COORDINATES, VOLTAGES, figures
+from rps3_study.metrics import COORDINATES, VOLTAGES, Figures, figures
+from rps3_study.results import Results
+from rps3_study.singularity import passage
 from rps3_study.tasks import Push, Task
 
 RADIUS = 0.2
 POSE = (*(f"p_{axis}" for axis in "xyz"), *(f"q_{part}" for part in "wxyz"))
 FORCES = tuple(f"f_axial{limb}" for limb in (1, 2, 3))
-SIGNALS = [f"plant.{n}" for n in (*COORDINATES, *POSE, *FORCES, "v_x", "v_y", "v_z", "sigma_min")] + [
-    f"controller.{n}" for n in (*VOLTAGES, *(f"{c}_ref" for c in COORDINATES), "rho", "rho_hd", "delta_hd", "lambda_f")
+LIMBS = tuple(f"{quantity}{limb}" for quantity in ("d", "theta") for limb in (1, 2, 3))
+MOTION = tuple(f"{quantity}_{axis}" for quantity in "vw" for axis in "xyz")
+DAMPING = ("rho", "rho_hd", "delta_hd", "lambda_f", "mpso_fitness", "mpso_iterations")
+SIGNALS = [f"plant.{n}" for n in (*COORDINATES, *POSE, *FORCES, *LIMBS, *MOTION, "sigma_min")] + [
+    f"controller.{n}" for n in (*VOLTAGES, *(f"{c}_ref" for c in COORDINATES), *DAMPING)
 ]
 
 
@@ -42,18 +47,24 @@ def test_voltage_counts_by_size_and_saturation_by_time() -> None:
     assert result.saturation_time == pytest.approx(1e-3)
 
 
-def test_push_acts_while_the_time_is_closer_to_its_center_than_half_its_width() -> None:
-    push = Push(force=-100.0, moment=5.0, center=0.5, half_width=0.02)
-    assert push(0.49) == {"f_ext_z": -100.0, "m_ext_x": 5.0}
-    assert push(0.47) == push(0.53) == {"f_ext_z": 0.0, "m_ext_x": 0.0}
+def test_push_acts_from_its_start_until_its_end() -> None:
+    push = Push(force=-100.0, moment=5.0, start=0.48, end=0.52)
+    assert push(0.48) == push(0.519) == {"f_ext_z": -100.0, "m_ext_x": 5.0}
+    assert push(0.479) == push(0.52) == {"f_ext_z": 0.0, "m_ext_x": 0.0}
 
 
 def test_report_holds_table_plots_and_data_and_is_the_same_when_written_again(tmp_path: Path) -> None:
     runs = {"DRAC": made_up_run(), "HDRAC+MPSO": made_up_run("no | such mode", length=0)}
     cases = [report.Case(Task("smooth", "Crossing", {}), "six motors", runs)]
-    first, second = (report.write(tmp_path / name, cases, Geometry(0.4, RADIUS)).parent for name in ("first", "second"))
+    geometry, case = Geometry(0.4, RADIUS), ("smooth", "six motors")
+    results = Results(
+        figures={case: {mode: figures(run, RADIUS) for mode, run in runs.items()}},
+        passages={case: {mode: passage(run, geometry) for mode, run in runs.items()}},
+        baselines={case: {"another": Figures(3.0, 1.0, 24.0, 0.0, end_stop=True)}},
+    )
+    first, second = (report.write(tmp_path / name, cases, geometry, results).parent for name in ("first", "second"))
     files = sorted(str(path.relative_to(first).as_posix()) for path in first.rglob("*.*"))
-    assert {"index.html", "report.md", "data/smooth-six-motors-drac.csv", "plots/smooth-six-motors-control.svg"} <= set(
+    assert {"index.html", "report.md", "data/smooth-six-motors-drac.csv", "plots/smooth-six-motors-damping.svg"} <= set(
         files
     )
     for name in files:
@@ -61,5 +72,7 @@ def test_report_holds_table_plots_and_data_and_is_the_same_when_written_again(tm
     text = (first / "report.md").read_text()
     assert "| DRAC | 2 | 1.41 | 12 | 1 | 0.93 |  |" in text
     assert "ended early: no \\| such mode" in text
+    assert "| another | 3 | 1 | 24 | 0 |  | reaches an end stop |" in text
+    assert Results.read(first / "results.json").baselines == results.baselines
     data = np.genfromtxt(first / "data" / "smooth-six-motors-drac.csv", delimiter=",", names=True, deletechars="")
     assert data["plant.heave"][0] == 1e-3

@@ -8,9 +8,10 @@ import pytest
 from rps3_study import homing, summary
 from rps3_study.couple import run_crossing
 from rps3_study.fmu import Fmu, Instance
+from rps3_study.limits import Limits
 from rps3_study.metrics import COORDINATES, pose_error
 from rps3_study.montecarlo import DEVIATIONS, Robot
-from rps3_study.study import FAILED, FINISHED, Study, execute, first_contact
+from rps3_study.study import FAILED, FINISHED, Study, execute
 from rps3_study.sweep import Axis, grid
 
 NOMINAL = {"base_radius": 0.4172, "joint_spacing": 0.3616}
@@ -96,7 +97,7 @@ def test_zeroed_encoders_tell_the_controller_that_it_is_at_the_start(plant: Fmu,
 
 def test_nominal_robot_keeps_its_stops_and_encoders(plant: Fmu) -> None:
     poses = [np.array([0.05, 0.0, 0.0]), np.array([0.03, 0.1, 0.1])]
-    nominal = homing.Limits(np.array([0.1143, -0.11]), np.array([0.3143, 0.58]))
+    nominal = Limits(np.array([0.1143, -0.11]), np.array([0.3143, 0.58]))
     own = homing.limb_positions(plant, NOMINAL, poses)
     limits = homing.own_limits(nominal, own, own)
     np.testing.assert_allclose(limits.low, nominal.low, rtol=1e-14)
@@ -144,9 +145,9 @@ def test_run_that_an_fmu_refuses_is_a_failed_record(plant: Fmu, controller: Fmu)
 
 def test_end_stop_that_a_limb_reaches_is_named(plant: Fmu, controller: Fmu) -> None:
     run = run_crossing(plant, controller, {}, {"control_mode": 2}, stop_time=0.02)
-    tight = homing.Limits(np.array([0.0, -3.0]), np.array([run["plant.d2"][0] - 1e-6, 3.0]))
-    assert homing.Limits.of(tight.parameters()).high[0] == tight.high[0]
-    assert first_contact(run, tight) == "d_max by limb 2 at 0.000 s"
+    tight = Limits(np.array([0.0, -3.0]), np.array([run["plant.d2"][0] - 1e-6, 3.0]))
+    assert Limits.of(tight.parameters()).high[0] == tight.high[0]
+    assert tight.first_contact(run) == "d_max by limb 2 at 0.000 s"
 
 
 def test_success_is_a_finished_run_off_the_stops_within_the_bound() -> None:

@@ -1,6 +1,9 @@
 //! `cargo xtask demo`: the study with the packaged FMUs.
 
-use anyhow::Result;
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
 use clap::Args;
 
 use crate::{command, package, python, setup, workspace};
@@ -13,14 +16,32 @@ pub struct Options {
     study: Vec<String>,
 }
 
-/// Packages the FMUs, couples them in FMPy and writes `dist/report/`.
+/// Packages the FMUs, couples them in FMPy, runs the baselines in process and writes `dist/report/`.
 ///
 /// # Errors
 /// When one of the steps fails.
 pub fn run(options: &Options) -> Result<()> {
     setup::run()?;
     package::run(&package::Options::default())?;
+    let dist = workspace::dist();
+    let baselines = baselines(&dist)?;
     let mut study = python::command(&["-m", "rps3_study.demo"]);
-    study.arg("--dist").arg(workspace::dist()).args(&options.study);
+    study.arg("--dist").arg(&dist).arg("--baselines").arg(baselines).args(&options.study);
     command::run(&mut study)
+}
+
+/// Hands the study's tasks to examples/baselines.rs; returns the file of its figures.
+fn baselines(dist: &Path) -> Result<PathBuf> {
+    let directory = dist.join("analysis");
+    fs::create_dir_all(&directory).with_context(|| format!("cannot create {}", directory.display()))?;
+    let create = |path: &Path| File::create(path).with_context(|| format!("cannot write {}", path.display()));
+    let (tasks, figures) = (directory.join("tasks.json"), directory.join("baselines.json"));
+    command::run(python::command(&["-m", "rps3_study.baselines"]).arg("--dist").arg(dist).stdout(create(&tasks)?))?;
+    let tasks = File::open(&tasks).with_context(|| format!("cannot read {}", tasks.display()))?;
+    command::run(
+        command::cargo(&["run", "--quiet", "--package", "rps3", "--example", "baselines"])
+            .stdin(tasks)
+            .stdout(create(&figures)?),
+    )?;
+    Ok(figures)
 }

@@ -22,7 +22,7 @@ def _figures(identifier: str, geometry: Geometry) -> dict[str, list[Panel]]:
     if identifier == "Rps3Plant":
         return {
             "Generalized coordinates and the pose error": shared["coordinates"],
-            "Axial forces of the limbs on the platform": shared["forces"],
+            "Axial forces of the limbs on the platform, and the largest voltage": shared["forces"],
             "Limb lengths": [Panel(f"d{limb}, cm", _output(f"plant.d{limb}", 100.0)) for limb in (1, 2, 3)],
         }
     return {
@@ -30,7 +30,8 @@ def _figures(identifier: str, geometry: Geometry) -> dict[str, list[Panel]]:
             Panel("pose error, mm", lambda run: pose_error(run, geometry.joint_radius), scale="log"),
             Panel("estimation error, mm", lambda run: _estimation_error(run, geometry.joint_radius)),
         ],
-        "Damping factors, voltage and singularity measure": shared["control"],
+        "Singularity measure and damping factors": shared["damping"],
+        "Swarm": shared["swarm"],
     }
 
 

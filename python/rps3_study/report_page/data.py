@@ -12,14 +12,13 @@ from rps3_study import plots
 from rps3_study.couple import Run
 from rps3_study.geometry import Geometry, degenerate_twists
 from rps3_study.metrics import pose_error
+from rps3_study.singularity import SINGULAR_REGION
 
 if TYPE_CHECKING:
     from rps3_study.report import Case
 
 STRIDE = 2
 """Of so many samples one is drawn; tables and CSV files take all."""
-SINGULAR_REGION = 0.1
-"""Smallest singular value below which the degenerate direction is drawn: the controller's default `delta_hd_fixed`."""
 FORCES = tuple(f"plant.f_axial{limb}" for limb in (1, 2, 3))
 
 
@@ -30,6 +29,7 @@ def payload(cases: Sequence[Case], geometry: Geometry) -> dict[str, Any]:
         "geometry": {"baseRadius": geometry.base_radius, "jointRadius": geometry.joint_radius},
         "singularRegion": SINGULAR_REGION,
         "modes": modes,
+        "styles": {mode: plots.STYLES[mode]._asdict() for mode in modes} | {"reference": plots.REFERENCE._asdict()},
         "groups": [
             {
                 "title": title,
@@ -51,6 +51,12 @@ def _case(case: Case, geometry: Geometry) -> dict[str, Any]:
         "forceScale": _force_scale(case),
         "references": {
             f"{title}/{i}": _pack(panel.reference(longest))
+            for title, group in panels.items()
+            for i, panel in enumerate(group)
+            if panel.reference is not None
+        },
+        "windows": {
+            f"{title}/{i}": plots.window(panel, case.runs)
             for title, group in panels.items()
             for i, panel in enumerate(group)
             if panel.reference is not None

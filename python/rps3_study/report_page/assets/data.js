@@ -2,7 +2,7 @@
 
 const raw = JSON.parse(document.getElementById("data").textContent);
 
-export const { geometry, singularRegion, modes, groups, cases } = raw;
+export const { geometry, singularRegion, modes, styles, groups, cases } = raw;
 
 const unpacked = new Map();
 
@@ -15,9 +15,8 @@ export function numbers(packed) {
   return unpacked.get(packed);
 }
 
-/** Colour-blind safe (Okabe & Ito); one colour a control mode on the whole page. */
-const palette = ["#d55e00", "#b98300", "#0072b2", "#009e73"];
-export const colour = (mode) => palette[modes.indexOf(mode) % palette.length];
+/** One colour a control mode on the whole page. */
+export const colour = (mode) => styles[mode].colour;
 
 /** Index of the sample at or before a time (s), within the run's length. */
 export function sampleAt(time, length, now) {

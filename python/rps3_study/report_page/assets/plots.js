@@ -1,6 +1,6 @@
 // The plots of the chosen case, all modes over each other, with a cursor at the time of the animation.
 
-import { cases, colour, groups, numbers } from "rps3/data";
+import { cases, groups, numbers, styles } from "rps3/data";
 
 const box = document.getElementById("plot");
 const HEIGHT = 150; // of a plot with its caption, px
@@ -46,12 +46,15 @@ export class Plots {
         hoverformat: ".4g",
       };
       const channel = `${group.title}/${i}`;
+      const window = chosen.windows[channel];
+      if (window) layout[`yaxis${axis}`].range = window;
+      if (panel.reference) {
+        traces.push(line(time, numbers(chosen.references[channel]), "reference", { color: styles.reference.colour, width: 4 }, axis, i === 0));
+      }
       for (const [mode, run] of Object.entries(chosen.runs)) {
         if (!shown.has(mode)) continue;
-        traces.push(line(time, numbers(run.panels[channel]), mode, { color: colour(mode), width: 1.6 }, axis, i === 0));
-      }
-      if (panel.reference) {
-        traces.push(line(time, numbers(chosen.references[channel]), "reference", { color: "#000", width: 1, dash: "dash" }, axis, i === 0));
+        const { colour, dash } = styles[mode];
+        traces.push(line(time, numbers(run.panels[channel]), mode, { color: colour, dash, width: 1.8 }, axis, i === 0));
       }
     });
     this.drawn = Plotly.react(box, traces, layout, { responsive: true, displaylogo: false }).then(() => {
