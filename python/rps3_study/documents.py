@@ -84,9 +84,14 @@ def why(results: Results) -> str:
         speeds = [number(passages[mode].speed) for mode in (DRAC, HDRAC, MPSO)]
         ends = [number(passages[mode].final_error) for mode in (DRAC, HDRAC)]
         errors = [number(figures[mode].peak_error) + "*" * figures[mode].end_stop for mode in (DRAC, HDRAC)]
-        braking = [f"{100 * passages[mode].braking:.0f}" for mode in (HDRAC, MPSO)]
+        braking = [share(passages[mode].braking) for mode in (HDRAC, MPSO)]
         rows.append([TITLES[task], variant.split()[0], *errors, *speeds, *ends, *braking])
     return markdown(header, rows)
+
+
+def share(value: float) -> str:
+    """A share in per cent, as coarse as it is reproducible."""
+    return "below 10" if value < 0.1 else f"{100 * value:.0f}"
 
 
 def fixed(results: Results) -> str:
@@ -101,6 +106,19 @@ def fixed(results: Results) -> str:
     return markdown(header, rows)
 
 
+def against_platform(results: Results) -> str:
+    """What the tuned mode adds to computed torque in platform coordinates."""
+    header = ["task", "motors", "HDRAC+MPSO, mm", "platform coordinates, mm", "lambda_f searched, mm", "MPSO"]
+    rows: list[list[object]] = []
+    for (task, variant), schemes in results.baselines.items():
+        own = results.figures[task, variant][MPSO].peak_error
+        others = [schemes[name].peak_error for name in (PLATFORM, f"{PLATFORM}, lambda_f searched")]
+        ratio = own / others[0]
+        outcome = "adds" if ratio < 0.8 else "loses" if ratio > 1.25 else "adds nothing"
+        rows.append([TITLES[task], variant.split()[0], *map(number, (own, *others)), outcome])
+    return markdown(header, rows)
+
+
 def parts_of_results(results: Results) -> dict[str, str]:
     """Generated parts that come from the demo."""
     return {
@@ -109,6 +127,7 @@ def parts_of_results(results: Results) -> dict[str, str]:
         "why": why(results),
         "schemes": schemes(results),
         "fixed": fixed(results),
+        "platform": against_platform(results),
     }
 
 

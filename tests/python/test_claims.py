@@ -17,9 +17,9 @@ from rps3_study.metrics import Figures
 from rps3_study.results import Case, Results
 from rps3_study.tasks import MODES, VARIANTS, tasks
 
-# Figures are printed with two digits, so 10 % is the last digit in the worst case; the bits are the same on every
-# platform, but the Python side sums and differentiates with numpy's own vector code.
-TOLERANCE = 0.1
+# Two digits are printed. Where a figure is sensitive (undamped modes at the singularity, three motors at the voltage
+# limit) other last bits in the plant's solver move it by a tenth; verdicts have no tolerance.
+TOLERANCE = 0.2
 REFRESH = "run `cargo xtask demo`, then `python -m rps3_study.documents`"
 NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?")
 
@@ -62,7 +62,9 @@ def test_claims_page_has_the_figures_and_verdicts_of_a_fresh_run(fresh: Results,
     assert [pair for pair in rows if not alike(*pair)] == [], REFRESH
 
 
-@pytest.mark.parametrize(("name", "part"), [("docs/claims.md", "schemes"), ("README.md", "peak errors")])
+@pytest.mark.parametrize(
+    ("name", "part"), [("docs/claims.md", "schemes"), ("docs/claims.md", "platform"), ("README.md", "peak errors")]
+)
 def test_tables_of_schemes_have_the_figures_of_a_fresh_run(
     fresh: Results, in_process: dict[Case, dict[str, Figures]], name: str, part: str
 ) -> None:

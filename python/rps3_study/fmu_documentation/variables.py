@@ -104,6 +104,6 @@ def _family(variable: ScalarVariable) -> tuple[str, ...]:
         variable.type if variable.variability in ("continuous", "fixed") else f"{variable.type}, {variable.variability}"
     )
     text = re.sub(r"\blimb [123]\b", "limb i", text)
-    text = re.sub(r", [wxyz] component$", "", text)
+    text = re.sub(r", [wxyz] component\b", "", text)
     name = re.sub(r"_[wxyz]$", "", re.sub(r"\d", "", variable.name))
     return name, unit, variable.start or "", limits, kind, text

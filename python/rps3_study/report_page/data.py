@@ -36,9 +36,15 @@ def payload(cases: Sequence[Case], geometry: Geometry) -> dict[str, Any]:
                 "panels": [{"label": p.label, "scale": p.scale, "reference": p.reference is not None} for p in panels],
             }
             for title, panels in plots.figures(geometry.joint_radius).items()
+            if any(_anything(panel, run) for panel in panels for case in cases for run in case.runs.values())
         ],
         "cases": [_case(case, geometry) for case in cases],
     }
+
+
+def _anything(panel: plots.Panel, run: Run) -> bool:
+    """There is something to see: modes without a swarm show none."""
+    return bool(np.isfinite(panel.quantity(run)).any())
 
 
 def _case(case: Case, geometry: Geometry) -> dict[str, Any]:
