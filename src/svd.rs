@@ -29,24 +29,9 @@ const MAX_SWEEPS: usize = 40;
 impl<const R: usize, const C: usize> Svd<R, C> {
     /// Of a finite matrix.
     pub fn new(matrix: &SMatrix<f64, R, C>) -> Self {
-        const { assert!(R >= C, "decompose the transpose of a wide matrix") };
         let mut columns = *matrix;
         let mut v = SMatrix::<f64, C, C>::identity();
-        for _ in 0..MAX_SWEEPS {
-            let mut rotated = false;
-            for p in 0..C {
-                for q in p + 1..C {
-                    if let Some(rotation) = orthogonalizing(&columns, p, q) {
-                        rotate(&mut columns, p, q, rotation);
-                        rotate(&mut v, p, q, rotation);
-                        rotated = true;
-                    }
-                }
-            }
-            if !rotated {
-                break;
-            }
-        }
+        orthogonalize(&mut columns, |p, q, rotation| rotate(&mut v, p, q, rotation));
         let norms: [f64; C] = std::array::from_fn(|k| columns.column(k).norm());
         let mut order: [usize; C] = std::array::from_fn(|k| k);
         order.sort_by(|&p, &q| norms[q].total_cmp(&norms[p]));
@@ -79,6 +64,38 @@ impl<const R: usize, const C: usize> Svd<R, C> {
             inverse += self.v.column(k) * self.u.column(k).transpose() / self.singular_values[k];
         }
         inverse
+    }
+}
+
+/// The smallest singular value of a finite matrix, the same number as [`Svd::new`] finds.
+pub fn smallest_singular_value<const R: usize, const C: usize>(matrix: &SMatrix<f64, R, C>) -> f64 {
+    let mut columns = *matrix;
+    orthogonalize(&mut columns, |_, _, _| {});
+    columns.column_iter().map(|column| column.norm()).min_by(f64::total_cmp).unwrap_or(0.0)
+}
+
+/// Makes the columns orthogonal by rotating pairs of them, and tells each rotation (columns, cosine
+/// and sine).
+#[inline(always)]
+fn orthogonalize<const R: usize, const C: usize>(
+    columns: &mut SMatrix<f64, R, C>,
+    mut rotated_by: impl FnMut(usize, usize, (f64, f64)),
+) {
+    const { assert!(R >= C, "decompose the transpose of a wide matrix") };
+    for _ in 0..MAX_SWEEPS {
+        let mut rotated = false;
+        for p in 0..C {
+            for q in p + 1..C {
+                if let Some(rotation) = orthogonalizing(columns, p, q) {
+                    rotate(columns, p, q, rotation);
+                    rotated_by(p, q, rotation);
+                    rotated = true;
+                }
+            }
+        }
+        if !rotated {
+            break;
+        }
     }
 }
 
@@ -128,6 +145,7 @@ mod tests {
             }
         }
         assert!(svd.singular_values.as_slice().windows(2).all(|pair| pair[0] >= pair[1]));
+        assert_eq!(smallest_singular_value(matrix), svd.singular_values[C - 1]);
         svd
     }
 

@@ -199,3 +199,35 @@ fn plant_s_derivatives_and_outputs_have_the_derivatives_it_tells() {
         }
     }
 }
+
+#[test]
+fn derivatives_alone_are_the_variables_that_an_update_writes() {
+    let (mut plant, mut values) = initialized::<Plant>(&Values::start(Plant::definition()));
+    for (k, x) in plant.continuous_states_mut().iter_mut().enumerate() {
+        *x += 0.01 * (k as f64 - 4.0);
+    }
+    let mut derivatives = [0.0; 12];
+    plant.derivatives(&values, 0.0, &mut derivatives).unwrap();
+    plant.update(&mut values, 0.0).unwrap();
+    let variables = &Plant::definition().derivatives;
+    assert_eq!(variables.len(), 12);
+    for (unknown, derivative) in variables.iter().zip(derivatives) {
+        // the same formulas in the same order: the same bits
+        assert_eq!(values.reals[slot::<Plant>(&unknown.variable)], derivative, "{}", unknown.variable);
+    }
+}
+
+#[test]
+fn a_directional_derivative_is_the_same_alone_and_among_all_outputs() {
+    let (mut plant, values) = initialized::<Plant>(&Values::start(Plant::definition()));
+    let derivatives: Vec<usize> = Plant::definition().derivatives.iter().map(|d| slot::<Plant>(&d.variable)).collect();
+    let with_an_output: Vec<usize> = derivatives.iter().copied().chain([slot::<Plant>("sigma_min")]).collect();
+    for known in ["heave", "tilt_y_dot", "i_rev2", "v_leg1", "f_ext_x"] {
+        let knowns = [slot::<Plant>(known)];
+        let (mut alone, mut among) = ([0.0; 12], [0.0; 13]);
+        plant.directional_derivative(&values, &along(false, &knowns), &derivatives, &mut alone).unwrap();
+        plant.directional_derivative(&values, &along(false, &knowns), &with_an_output, &mut among).unwrap();
+        assert_eq!(alone, among[..12], "along {known}");
+        assert!(alone.iter().any(|x| *x != 0.0), "along {known}");
+    }
+}

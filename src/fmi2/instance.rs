@@ -140,11 +140,14 @@ impl<M: Model> Instance<M> {
     pub(super) fn check_finite(&self) -> CallResult {
         match self.now.values.reals.iter().position(|x| !x.is_finite()) {
             None => Ok(()),
-            Some(slot) => {
-                let name = self.layout.name(&self.layout.reals.entries[slot]);
-                Err(CallError::Discard(format!("{name} is not finite")))
-            }
+            Some(slot) => Err(self.not_finite(slot)),
         }
+    }
+
+    /// The error of a Real that is not finite.
+    pub(super) fn not_finite(&self, slot: usize) -> CallError {
+        let name = self.layout.name(&self.layout.reals.entries[slot]);
+        CallError::Discard(format!("{name} is not finite"))
     }
 }
 

@@ -40,26 +40,30 @@ pub struct Entry {
 #[derive(Debug, Clone, Default)]
 pub struct Table {
     pub entries: Vec<Entry>,
-    /// Value references in ascending order, and the slots they belong to.
-    references: Vec<u32>,
-    slots: Vec<usize>,
+    /// The slot of each value reference, [`NONE`] where there is none: references are small numbers, and
+    /// hosts ask for dozens a step.
+    slots: Vec<u32>,
 }
+
+const NONE: u32 = u32::MAX;
 
 impl Table {
     /// The slot behind a value reference.
+    #[inline]
     pub fn slot(&self, reference: u32) -> Option<usize> {
-        self.references.binary_search(&reference).ok().map(|i| self.slots[i])
+        self.slots.get(reference as usize).filter(|slot| **slot != NONE).map(|slot| *slot as usize)
     }
 
     fn new(definition: &Definition, variable_type: VariableType) -> Self {
         let variables = definition.variables.iter().enumerate().filter(|(_, v)| v.variable_type() == variable_type);
         let mut inputs = 0;
         let entries: Vec<Entry> = variables.clone().map(|(i, v)| entry(definition, i, v, &mut inputs)).collect();
-        let mut pairs: Vec<(u32, usize)> =
-            variables.enumerate().map(|(slot, (_, v))| (v.value_reference, slot)).collect();
-        pairs.sort_unstable();
-        let (references, slots) = pairs.into_iter().unzip();
-        Self { entries, references, slots }
+        let largest = variables.clone().map(|(_, v)| v.value_reference).max();
+        let mut slots = vec![NONE; largest.map_or(0, |reference| reference as usize + 1)];
+        for (slot, (_, v)) in (0..).zip(variables) {
+            slots[v.value_reference as usize] = slot;
+        }
+        Self { entries, slots }
     }
 }
 

@@ -105,6 +105,10 @@ pub trait Model: Clone + Serialize + DeserializeOwned + Send + 'static {
     /// Brings every calculated variable up to date with time, states, inputs and tunable parameters.
     fn update(&mut self, values: &mut Values, time: f64) -> ModelResult;
 
+    /// The state derivatives at `time`, in the order of the states: what [`Model::update`] would write to
+    /// their variables. A solver of the host asks for these alone, many times a step.
+    fn derivatives(&self, values: &Values, time: f64, derivatives: &mut [f64]) -> ModelResult;
+
     /// Advances from `from` to `to` (Co-Simulation) and writes the calculated variables there.
     /// On error the layer restores model and values as they were before the call.
     fn step(

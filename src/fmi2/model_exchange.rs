@@ -94,6 +94,14 @@ impl<M: Model> Instance<M> {
     /// `fmi2GetDerivatives`
     pub(super) fn get_derivatives(&mut self, out: &mut [f64]) -> CallResult {
         check_length("continuous states", out.len(), self.layout.derivatives.len())?;
+        let now = &self.now;
+        if now.stale && matches!(now.mode, Mode::Event | Mode::ContinuousTime) {
+            now.model.derivatives(&now.values, now.time, out)?;
+            return match out.iter().position(|x| !x.is_finite()) {
+                None => Ok(()),
+                Some(i) => Err(self.not_finite(self.layout.derivatives[i])),
+            };
+        }
         self.refresh()?;
         for (out, &slot) in out.iter_mut().zip(&self.layout.derivatives) {
             *out = self.now.values.reals[slot];

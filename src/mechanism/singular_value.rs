@@ -4,7 +4,7 @@ use nalgebra::Matrix6;
 use num_dual::Dual64;
 
 use crate::scalar::Scalar;
-use crate::svd::Svd;
+use crate::svd::{Svd, smallest_singular_value};
 
 /// A scalar whose matrices have a smallest singular value that can be computed.
 pub trait SingularValues: Scalar {
@@ -14,7 +14,7 @@ pub trait SingularValues: Scalar {
 
 impl SingularValues for f64 {
     fn sigma_min(matrix: &Matrix6<f64>) -> f64 {
-        Svd::new(matrix).singular_values[5]
+        smallest_singular_value(matrix)
     }
 }
 

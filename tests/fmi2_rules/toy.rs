@@ -158,12 +158,7 @@ impl Oscillator {
     }
 
     fn write(&self, values: &mut Values) -> ModelResult {
-        match values.integers[slot::TROUBLE] {
-            trouble::PANIC => panic!("100% wrong"),
-            trouble::DISCARD => return Err(ModelError::Discard("no convergence".into())),
-            trouble::ERROR => return Err(ModelError::Error("broken for good".into())),
-            _ => {}
-        }
+        misbehave(values)?;
         let [x, v] = self.states;
         let r = &mut values.reals;
         r[slot::X] = x;
@@ -174,6 +169,15 @@ impl Oscillator {
         values.integers[slot::TICKS] = self.ticks as i32;
         values.booleans[slot::POSITIVE] = x > 0.0;
         Ok(())
+    }
+}
+
+fn misbehave(values: &Values) -> ModelResult {
+    match values.integers[slot::TROUBLE] {
+        trouble::PANIC => panic!("100% wrong"),
+        trouble::DISCARD => Err(ModelError::Discard("no convergence".into())),
+        trouble::ERROR => Err(ModelError::Error("broken for good".into())),
+        _ => Ok(()),
     }
 }
 
@@ -219,6 +223,16 @@ impl Model for Oscillator {
 
     fn update(&mut self, values: &mut Values, _time: f64) -> ModelResult {
         self.write(values)
+    }
+
+    fn derivatives(&self, values: &Values, _time: f64, derivatives: &mut [f64]) -> ModelResult {
+        misbehave(values)?;
+        let ([x, v], r) = (self.states, &values.reals);
+        derivatives.copy_from_slice(&[v, acceleration(r[slot::K], r[slot::C], x, v, r[slot::U])]);
+        if values.integers[slot::TROUBLE] == trouble::NAN {
+            derivatives[1] = f64::NAN;
+        }
+        Ok(())
     }
 
     fn step(

@@ -421,6 +421,11 @@ impl Model for Controller {
         Ok(())
     }
 
+    fn derivatives(&self, _values: &Values, _time: f64, _derivatives: &mut [f64]) -> ModelResult {
+        // there are no states
+        Ok(())
+    }
+
     fn step(
         &mut self,
         values: &mut Values,

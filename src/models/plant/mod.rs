@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 use num_dual::Dual64;
 use serde::{Deserialize, Serialize};
 
-use self::outputs::{CALCULATED, Calculated, calculate};
+use self::outputs::{CALCULATED, Calculated, calculate, is_state_or_derivative, states_and_derivatives};
 use super::{descriptions, slots};
 use crate::description::Definition;
 use crate::dynamics::solver::{Settings, Solver};
@@ -237,6 +237,11 @@ impl Model for Plant {
         Ok(())
     }
 
+    fn derivatives(&self, values: &Values, _time: f64, derivatives: &mut [f64]) -> ModelResult {
+        derivatives.copy_from_slice(derivative(&self.model, &self.x, &inputs(values)).as_slice());
+        Ok(())
+    }
+
     fn step(
         &mut self,
         values: &mut Values,
@@ -300,7 +305,12 @@ impl Model for Plant {
         } else {
             let model = PlantModel::new(&self.parameters.map(Dual64::from));
             let x = PlantState::from_fn(|i, _| Dual64::new(self.x[i], direction.along(slots.calculated + i)));
-            calculate(&model, &x, &u)
+            let mut places = unknowns.iter().filter_map(|slot| slot.checked_sub(slots.calculated));
+            if places.all(is_state_or_derivative) {
+                states_and_derivatives(&model, &x, &u)
+            } else {
+                calculate(&model, &x, &u)
+            }
         };
         pick(&calculated, unknowns, result)
     }

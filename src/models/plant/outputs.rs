@@ -2,13 +2,19 @@
 
 use nalgebra::SVector;
 
-use crate::dynamics::{Inputs, PlantModel, PlantState, STATES, electric_power, energy, evaluate, reactions};
+use crate::dynamics::{
+    Inputs, PlantModel, PlantState, STATES, derivative, electric_power, energy, evaluate, reactions,
+};
 use crate::mechanism::{OverallJacobian, SingularValues, normalized_det_a};
 use crate::scalar::Scalar;
 
 /// States, other outputs, and the derivatives that are no outputs, in the table's order: it puts
 /// them in one row of consecutive slots.
-pub const CALCULATED: usize = STATES + 41 + 9;
+pub const CALCULATED: usize = STATES + OUTPUTS + STATES - COORDINATES;
+/// Outputs beside the states.
+const OUTPUTS: usize = 41;
+/// Their derivatives are states themselves.
+const COORDINATES: usize = 3;
 
 /// The values of all calculated variables.
 pub type Calculated<T> = SVector<T, CALCULATED>;
@@ -41,8 +47,26 @@ pub fn calculate<T: SingularValues>(model: &PlantModel<T>, x: &PlantState<T>, in
         electric_power(model, x, inputs),
         energy(model, x),
     ]);
-    row.put(&e.derivative.as_slice()[3..]);
+    row.put(&e.derivative.as_slice()[COORDINATES..]);
     debug_assert_eq!(row.next, CALCULATED);
+    result
+}
+
+/// Whether [`states_and_derivatives`] has the variable in this place.
+pub fn is_state_or_derivative(place: usize) -> bool {
+    !(STATES..STATES + OUTPUTS).contains(&place)
+}
+
+/// As [`calculate`], the other outputs left zero: what the host's solver needs for its Jacobian.
+pub fn states_and_derivatives<T: Scalar>(
+    model: &PlantModel<T>,
+    x: &PlantState<T>,
+    inputs: &Inputs<T>,
+) -> Calculated<T> {
+    let mut result = Calculated::zeros();
+    let (states, rest) = result.as_mut_slice().split_at_mut(STATES);
+    states.copy_from_slice(x.as_slice());
+    rest[OUTPUTS..].copy_from_slice(&derivative(model, x, inputs).as_slice()[COORDINATES..]);
     result
 }
 
