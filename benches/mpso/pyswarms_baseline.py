@@ -1,5 +1,6 @@
-"""The counterpart of main.rs beside this file for pyswarms' GlobalBestPSO: 20 particles, 30
-iterations, a sum of squares in 2 and 3 members. Its objective sees all particles in one call.
+"""The counterpart of main.rs beside this file for pyswarms' GlobalBestPSO.
+
+20 particles, 30 iterations, a sum of squares in 2 and 3 members. Its objective sees all particles in one call.
 
     pip install pyswarms && python benches/mpso/pyswarms_baseline.py
 """

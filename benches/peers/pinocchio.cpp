@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
   if (!file) return 3;
 
   pin::ProximalSettings proximal(1e-14, 0.0, 1);
-  pin::initConstraintDynamics(model, data, closures);
+  pin::initConstraintDynamics(model, data, closures, closure_data);
   const auto accelerate = [&](const State& state) -> const Eigen::VectorXd& {
     return pin::constraintDynamics(model, data, state.q, state.v, state.tau, closures, closure_data, proximal);
   };

@@ -4,6 +4,7 @@
 
 mod analysis;
 mod archive;
+mod bench;
 mod command;
 mod demo;
 mod describe;
@@ -54,6 +55,8 @@ enum Task {
     Test(test::Options),
     /// Count the instructions of the hot paths and compare with the record
     Instructions(instructions::Options),
+    /// Measure against other engines and masters: dist/bench/
+    Bench(bench::Options),
     /// Run the fuzz targets under libFuzzer
     Fuzz(fuzz::Options),
     /// Check format, lints, documentation and Python code
@@ -71,6 +74,7 @@ fn main() -> ExitCode {
         Task::Masters(options) => masters::run(&options),
         Task::Test(options) => test::run(&options),
         Task::Instructions(options) => instructions::run(&options),
+        Task::Bench(options) => bench::run(&options),
         Task::Fuzz(options) => fuzz::run(&options),
         Task::Lint => lint::run(),
     };

@@ -1,0 +1,1 @@
+"""What `cargo xtask bench` measures, and the table it writes."""

@@ -1,0 +1,38 @@
+//! `cargo xtask bench`: the table of ratios, `benches/suite` on what is built here.
+
+use std::process::Command;
+
+use anyhow::{Context, Result};
+use clap::Args;
+
+use crate::{command, package, python, setup, workspace};
+
+/// Options of `bench`.
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Handed on to the suite, e.g. `-- step pair`; `-- --help` tells what there is
+    #[arg(last = true)]
+    suite: Vec<String>,
+}
+
+/// Builds the FMUs and the programs they are compared with, measures, prints the table and writes
+/// `dist/bench/`.
+///
+/// # Errors
+/// When something does not build or cannot be measured.
+pub fn run(options: &Options) -> Result<()> {
+    setup::run()?;
+    package::run(&package::Options::default())?;
+    let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-input", "--requirement"];
+    command::run(python::command(&pip).arg("benches/requirements.txt"))?;
+    let manifest = "--manifest-path=benches/native/Cargo.toml";
+    let mut build = command::cargo(&["build", "--release", manifest, "--target-dir=target/bench"]);
+    // for the bindings of the crate fmi: libclang from PyPI comes without the compiler's own headers
+    let headers = Command::new("gcc").arg("-print-file-name=include").output().context("gcc is needed")?.stdout;
+    build.env("BINDGEN_EXTRA_CLANG_ARGS", format!("-I{}", String::from_utf8(headers)?.trim()));
+    command::run(&mut build)?;
+    let mut suite = python::command(&["-m", "suite"]);
+    let paths = std::env::join_paths(["benches", "tests/python"].map(|path| workspace::root().join(path)))?;
+    suite.env("PYTHONPATH", paths).env("RPS3_BENCH", workspace::root().join("target/bench/release/rps3-bench"));
+    command::run(suite.args(&options.suite))
+}
