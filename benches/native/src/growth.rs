@@ -12,8 +12,9 @@ use crate::fmu::{Fmu, Instance};
 use crate::pair::{self, Wires};
 use crate::seconds;
 
-/// Ticks of each instance that are timed.
-const TICKS: usize = 20;
+/// Ticks that are timed, of all pairs together and of each at least.
+const TICKS: usize = 20_000;
+const LEAST_TICKS: usize = 20;
 const DRAC: i32 = 2;
 
 /// Resident bytes an instance of each FMU (initialized and stepped once), and seconds a tick of a pair
@@ -31,7 +32,7 @@ pub fn instances(plant: &str, controller: &str, count: usize, threads: usize) ->
         pairs.push(pair);
     }
     let after = resident()?;
-    let share = count.div_ceil(threads);
+    let (share, ticks) = (count.div_ceil(threads), LEAST_TICKS.max(TICKS / count));
     let mut outcomes = Vec::new();
     let elapsed = seconds(|| {
         std::thread::scope(|scope| {
@@ -40,7 +41,7 @@ pub fn instances(plant: &str, controller: &str, count: usize, threads: usize) ->
                 .map(|pairs| {
                     let wires = &wires;
                     scope.spawn(move || -> Result<()> {
-                        for k in 1..=TICKS {
+                        for k in 1..=ticks {
                             for pair in &mut *pairs {
                                 step(pair, wires, k)?;
                             }
@@ -58,7 +59,7 @@ pub fn instances(plant: &str, controller: &str, count: usize, threads: usize) ->
     drop(first);
     Ok(json!({
         "bytes": (after.saturating_sub(before)) as f64 / count as f64,
-        "seconds": elapsed / (count * TICKS) as f64,
+        "seconds": elapsed / (count * ticks) as f64,
     }))
 }
 

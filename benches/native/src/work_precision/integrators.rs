@@ -6,6 +6,7 @@ use anyhow::{Result, anyhow};
 use differential_equations::methods::ExplicitRungeKutta;
 use differential_equations::prelude::{IVP, ODE};
 use diffsol::{MatrixCommon, NalgebraLU, NalgebraMat, OdeBuilder, OdeSolverMethod};
+use ode_solvers::OutputType;
 use rps3::dynamics::solver::{Settings, Solver};
 use rps3::dynamics::{NOMINAL, PlantState};
 
@@ -105,6 +106,8 @@ fn ode_solvers_dop853(segments: &[Segment], start: State, tolerance: f64) -> Res
         let span = segment.duration;
         let x = Vector::from(x);
         let mut solver = ode_solvers::Dop853::new(segment, 0.0, span, span, x, tolerance, tolerance * SMALLEST);
+        // not by interpolation, which is less accurate
+        solver.set_output(OutputType::Sparse);
         solver.integrate().map_err(|error| anyhow!("{error}"))?;
         last(solver.y_out())
     })
@@ -115,6 +118,8 @@ fn ode_solvers_dopri5(segments: &[Segment], start: State, tolerance: f64) -> Res
         let span = segment.duration;
         let x = Vector::from(x);
         let mut solver = ode_solvers::Dopri5::new(segment, 0.0, span, span, x, tolerance, tolerance * SMALLEST);
+        // not by interpolation, which is less accurate
+        solver.set_output(OutputType::Sparse);
         solver.integrate().map_err(|error| anyhow!("{error}"))?;
         last(solver.y_out())
     })
