@@ -5,13 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import matplotlib.pyplot as plt
+from matplotlib.ticker import NullFormatter
 
 from suite.peers import Native
 from suite.table import Listing, duration
 
 PROBLEMS = {"held": "voltages that jump each millisecond", "smooth": "0.3 s in one piece"}
-# where the table compares: the FMU's solver by default
-TOLERANCE = 1e-7
 # an error that the plant's step must keep, and what it costs
 ERROR = 1e-6
 
@@ -40,7 +39,7 @@ def measure(native: Native, rounds: int) -> tuple[list[dict], Listing]:
 def draw(rows: list[dict], path: Path) -> None:
     """Error over right-hand sides (left) and time (right), a row of pictures a problem."""
     plt.rcParams["svg.hashsalt"] = "rps3"
-    figure, axes = plt.subplots(len(PROBLEMS), 2, figsize=(11, 9), sharey="row", layout="constrained")
+    figure, axes = plt.subplots(len(PROBLEMS), 2, figsize=(11, 9.5), sharey="row", layout="constrained")
     integrators = list(dict.fromkeys(row["integrator"] for row in rows))
     for line, (problem, title) in zip(axes, PROBLEMS.items(), strict=True):
         for axis, (quantity, scale, label) in zip(
@@ -62,9 +61,10 @@ def draw(rows: list[dict], path: Path) -> None:
                 )
             axis.set_xlabel(label)
             axis.set_title(title)
+            axis.xaxis.set_minor_formatter(NullFormatter())
             axis.grid(visible=True, which="major", alpha=0.3)
         line[0].set_ylabel("largest error over the states' nominal magnitudes")
-    axes[0, 1].legend(fontsize="small")
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, metadata={"Date": None} if path.suffix == ".svg" else None, dpi=110)
     plt.close(figure)

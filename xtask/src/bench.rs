@@ -1,8 +1,6 @@
 //! `cargo xtask bench`: the table of ratios, `benches/suite` on what is built here.
 
-use std::process::Command;
-
-use anyhow::{Context, Result};
+use anyhow::Result;
 use clap::Args;
 
 use crate::{command, package, python, setup, workspace};
@@ -26,11 +24,7 @@ pub fn run(options: &Options) -> Result<()> {
     let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-input", "--requirement"];
     command::run(python::command(&pip).arg("benches/requirements.txt"))?;
     let manifest = "--manifest-path=benches/native/Cargo.toml";
-    let mut build = command::cargo(&["build", "--release", manifest, "--target-dir=target/bench"]);
-    // for the bindings of the crate fmi: libclang from PyPI comes without the compiler's own headers
-    let headers = Command::new("gcc").arg("-print-file-name=include").output().context("gcc is needed")?.stdout;
-    build.env("BINDGEN_EXTRA_CLANG_ARGS", format!("-I{}", String::from_utf8(headers)?.trim()));
-    command::run(&mut build)?;
+    command::run(&mut command::cargo(&["build", "--release", manifest, "--target-dir=target/bench"]))?;
     let mut suite = python::command(&["-m", "suite"]);
     let paths = std::env::join_paths(["benches", "tests/python"].map(|path| workspace::root().join(path)))?;
     suite.env("PYTHONPATH", paths).env("RPS3_BENCH", workspace::root().join("target/bench/release/rps3-bench"));
