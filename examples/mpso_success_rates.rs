@@ -33,7 +33,7 @@ fn successes<const D: usize>(function: &Function, settings: Settings, seeds: u64
     let mut found = 0;
     for seed in 0..seeds {
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
-        let solution = swarm.minimize(&mut rng, None, |x: &[f64; D]| (function.value)(x));
+        let solution = swarm.minimize(&mut rng, &[], |x: &[f64; D]| (function.value)(x));
         found += u64::from(solution.value < function.basin);
     }
     found

@@ -85,7 +85,7 @@ pub const FILTER_TIME: f64 = 0.05;
 /// Swarm
 pub const SWARM_SIZE: i32 = 20;
 pub const MAX_ITERATIONS: i32 = 30;
-pub const STALL_ITERATIONS: i32 = 8;
+pub const STALL_ITERATIONS: i32 = 12;
 pub const C1: f64 = 2.0;
 pub const C2: f64 = 2.0;
 /// Inertia from .. to (3.2) *, decay scale from .. to (3.5) *, regulating scale R (3.5) *

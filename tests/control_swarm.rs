@@ -106,11 +106,10 @@ fn six_motors_find_the_dense_grids_optimum_within_1_percent_in_99_percent_of_the
     assert!(within >= 0.99, "{within}");
 }
 
-/// Three motors have a third member and an objective with two basins, at small and at large rho, whose
-/// minima differ by a factor of up to 3 in square micrometres; the swarm keeps to one at times.
+/// Three motors have a third member, and a fitness with a valley in more than one quarter of (rho, delta_hd).
 #[test]
-fn three_motors_find_the_dense_grids_optimum_within_1_percent_in_90_percent_of_the_ticks() {
-    let ratios = ratios(false, 14, (100, 40, 50));
+fn three_motors_find_the_dense_grids_optimum_within_1_percent_in_99_percent_of_the_ticks() {
+    let ratios = ratios(false, 5, (100, 40, 50));
     let within = ratios.iter().filter(|ratio| **ratio < 1.01).count() as f64 / ratios.len() as f64;
-    assert!(within >= 0.9 && ratios.iter().all(|ratio| *ratio < 10.0), "{within} {ratios:?}");
+    assert!(within >= 0.99 && ratios.iter().all(|ratio| *ratio < 1.5), "{within} {ratios:?}");
 }

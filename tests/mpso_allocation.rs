@@ -13,8 +13,8 @@ fn searching_never_allocates() {
             let mut swarm = Swarm::new(Bounds::new([-1.0; 3], [2.0; 3]).unwrap(), settings).unwrap();
             let mut rng = Xoshiro256PlusPlus::seed_from_u64(1);
             let bowl = |x: &[f64; 3]| x.iter().map(|x| x * x).sum();
-            let first = allocation_counter::measure(|| _ = swarm.minimize(&mut rng, None, bowl));
-            let second = allocation_counter::measure(|| _ = swarm.minimize(&mut rng, Some([0.1; 3]), bowl));
+            let first = allocation_counter::measure(|| _ = swarm.minimize(&mut rng, &[], bowl));
+            let second = allocation_counter::measure(|| _ = swarm.minimize(&mut rng, &[[0.1; 3]], bowl));
             assert_eq!((first.count_total, second.count_total), (0, 0));
         }
     }

@@ -50,7 +50,7 @@ fn each_iteration_follows_the_schedule_and_the_best_never_worsens() {
     let mut last: Option<f64> = None;
     swarm::<3>(RASTRIGIN.lower, RASTRIGIN.upper, settings).minimize_observed(
         &mut generator(7),
-        None,
+        &[],
         |x| (RASTRIGIN.value)(x),
         |progress| {
             if let Some(last) = last {
@@ -69,7 +69,7 @@ fn a_smooth_bowl_is_solved_in_every_dimension() {
         let settings = Settings { selection, ..unstalled(300) };
         let mut swarm = swarm::<D>(SPHERE.lower, SPHERE.upper, settings);
         for seed in 0..20 {
-            let solution = swarm.minimize(&mut generator(seed), None, |x| (SPHERE.value)(x));
+            let solution = swarm.minimize(&mut generator(seed), &[], |x| (SPHERE.value)(x));
             // A thousandth of the range from the minimum in each member.
             assert!(solution.value < D as f64 * 0.015 * 0.015, "{D} members, {selection:?}, seed {seed}: {solution:?}");
         }
@@ -85,25 +85,25 @@ fn a_smooth_bowl_is_solved_in_every_dimension() {
 #[test]
 fn an_optimum_on_the_edge_of_the_box_is_hit_exactly() {
     let settings = unstalled(100);
-    let solution = swarm::<2>(-1.0, 2.0, settings).minimize(&mut generator(3), None, |x| x[0] - x[1]);
+    let solution = swarm::<2>(-1.0, 2.0, settings).minimize(&mut generator(3), &[], |x| x[0] - x[1]);
     assert_eq!(solution.position, [-1.0, 2.0]);
 }
 
 #[test]
 fn the_first_stopping_criterion_counts_iterations() {
-    let solution = swarm::<2>(-1.0, 1.0, unstalled(17)).minimize(&mut generator(1), None, |x| x[0]);
+    let solution = swarm::<2>(-1.0, 1.0, unstalled(17)).minimize(&mut generator(1), &[], |x| x[0]);
     assert_eq!((solution.iterations, solution.evaluations), (17, 20 * 18));
 }
 
 #[test]
 fn the_second_stopping_criterion_counts_iterations_without_improvement() {
     let settings = Settings { stall_iterations: 5, ..Settings::default() };
-    let flat = swarm::<2>(-1.0, 1.0, settings).minimize(&mut generator(1), None, |_| 1.0);
+    let flat = swarm::<2>(-1.0, 1.0, settings).minimize(&mut generator(1), &[], |_| 1.0);
     assert_eq!(flat.iterations, 5);
 
     // One improvement, in iteration 3, restarts the count.
     let mut evaluations = 0;
-    let once = swarm::<2>(-1.0, 1.0, settings).minimize(&mut generator(1), None, |_| {
+    let once = swarm::<2>(-1.0, 1.0, settings).minimize(&mut generator(1), &[], |_| {
         evaluations += 1;
         if evaluations == 20 + 2 * 20 + 5 { 0.0 } else { 1.0 }
     });
@@ -115,18 +115,18 @@ fn a_warm_start_is_evaluated_first_and_never_lost() {
     let mut swarm = swarm::<3>(-5.0, 5.0, Settings::default());
     let start = [0.1, 0.7, -0.3];
     let needle = |x: &[f64; 3]| if *x == start { -1.0 } else { x.iter().map(|x| x * x).sum() };
-    let solution = swarm.minimize(&mut generator(1), Some(start), needle);
+    let solution = swarm.minimize(&mut generator(1), &[start], needle);
     assert_eq!((solution.position, solution.value), (start, -1.0));
 
     let mut first = None;
-    swarm.minimize(&mut generator(1), Some([9.0, -9.0, 1.0]), |x| {
+    swarm.minimize(&mut generator(1), &[[9.0, -9.0, 1.0]], |x| {
         first.get_or_insert(*x);
         0.0
     });
     assert_eq!(first, Some([5.0, -5.0, 1.0]), "a start outside is moved to the box");
 
-    let without = swarm.minimize(&mut generator(4), None, |x| x[0]);
-    let undefined = swarm.minimize(&mut generator(4), Some([f64::NAN, 0.0, 0.0]), |x| x[0]);
+    let without = swarm.minimize(&mut generator(4), &[], |x| x[0]);
+    let undefined = swarm.minimize(&mut generator(4), &[[f64::NAN, 0.0, 0.0]], |x| x[0]);
     assert_eq!(without, undefined);
 }
 
@@ -139,12 +139,11 @@ fn values_that_are_not_finite_count_as_worst() {
         a if a > 2.0 => f64::INFINITY,
         a => (a - 1.0) * (a - 1.0) + x[1] * x[1],
     };
-    let solution = swarm::<2>(-5.0, 5.0, unstalled(200)).minimize(&mut generator(1), None, holed);
+    let solution = swarm::<2>(-5.0, 5.0, unstalled(200)).minimize(&mut generator(1), &[], holed);
     assert!(solution.position.iter().all(|x| x.is_finite()));
     assert!(solution.value.is_finite() && solution.value < 1e-3, "{solution:?}");
 
-    let nowhere =
-        swarm::<2>(-5.0, 5.0, Settings::default()).minimize(&mut generator(1), Some([1.0, 2.0]), |_| f64::NAN);
+    let nowhere = swarm::<2>(-5.0, 5.0, Settings::default()).minimize(&mut generator(1), &[[1.0, 2.0]], |_| f64::NAN);
     assert_eq!((nowhere.position, nowhere.value), ([1.0, 2.0], f64::INFINITY));
 }
 
@@ -152,7 +151,7 @@ fn values_that_are_not_finite_count_as_worst() {
 fn a_member_with_equal_bounds_stays_where_it_is() {
     let bounds = Bounds::new([-1.0, 0.25], [1.0, 0.25]).unwrap();
     let mut swarm = Swarm::new(bounds, unstalled(100)).unwrap();
-    let solution = swarm.minimize(&mut generator(1), None, |x| {
+    let solution = swarm.minimize(&mut generator(1), &[], |x| {
         assert_eq!(x[1], 0.25);
         x[0] * x[0]
     });
@@ -167,7 +166,7 @@ fn without_decay_scale_distance_plays_no_part() {
     let search = |settings, unit: f64| {
         let bounds = Bounds::new([-1.0, -1.0], [1.0, 1.0]).unwrap();
         let mut visited = Vec::new();
-        Swarm::new(bounds, settings).unwrap().minimize(&mut generator(2), None, |x| {
+        Swarm::new(bounds, settings).unwrap().minimize(&mut generator(2), &[], |x| {
             visited.push(*x);
             unit * (RASTRIGIN.value)(&[5.0 * x[0], 5.0 * x[1]])
         });
@@ -189,15 +188,15 @@ fn searches_leave_nothing_behind_but_the_generator() {
     let mut used = swarm::<3>(RASTRIGIN.lower, RASTRIGIN.upper, Settings::default());
     let mut rng = generator(11);
     for _ in 0..5 {
-        used.minimize(&mut rng, None, |x| (RASTRIGIN.value)(x));
+        used.minimize(&mut rng, &[], |x| (RASTRIGIN.value)(x));
     }
     // Continue after a snapshot of the generator with a new swarm.
     let snapshot = postcard::to_stdvec(&rng).unwrap();
     let mut restored: Xoshiro256PlusPlus = postcard::from_bytes(&snapshot).unwrap();
     let mut fresh = swarm::<3>(RASTRIGIN.lower, RASTRIGIN.upper, Settings::default());
     for _ in 0..5 {
-        let a = used.minimize(&mut rng, None, |x| (RASTRIGIN.value)(x));
-        let b = fresh.minimize(&mut restored, None, |x| (RASTRIGIN.value)(x));
+        let a = used.minimize(&mut rng, &[], |x| (RASTRIGIN.value)(x));
+        let b = fresh.minimize(&mut restored, &[], |x| (RASTRIGIN.value)(x));
         assert_eq!(bits(&a), bits(&b));
     }
     assert_eq!(rng.next_u64(), restored.next_u64());
@@ -275,7 +274,7 @@ proptest! {
         let mut previous = f64::INFINITY;
         let solution = Swarm::new(bounds, settings).unwrap().minimize_observed(
             &mut generator(seed),
-            None,
+            &[],
             |x| {
                 for g in 0..3 {
                     assert!(lower[g] <= x[g] && x[g] <= upper[g], "{x:?} is outside");

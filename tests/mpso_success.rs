@@ -30,7 +30,7 @@ fn rate<const D: usize>(function: &Function, settings: Settings) -> f64 {
     let mut swarm = Swarm::new(Bounds::new([function.lower; D], [function.upper; D]).unwrap(), settings).unwrap();
     let found = |seed: &u64| {
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(*seed);
-        swarm.minimize(&mut rng, None, |x| (function.value)(x)).value < function.basin
+        swarm.minimize(&mut rng, &[], |x| (function.value)(x)).value < function.basin
     };
     (0..SEEDS).filter(found).count() as f64 / SEEDS as f64
 }

@@ -38,7 +38,7 @@ fn swarms<const D: usize>(criterion: &mut Criterion) {
         let mut swarm = Swarm::new(bounds, settings).expect("the settings are within their ranges");
         let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(1);
         group.bench_function(name, |bencher| {
-            bencher.iter(|| swarm.minimize(&mut rng, None, |x| argmin_problem::bowl(x)));
+            bencher.iter(|| swarm.minimize(&mut rng, &[], |x| argmin_problem::bowl(x)));
         });
     }
 

@@ -6,9 +6,9 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use serde::{Deserialize, Serialize};
 
 use super::actuation::voltages;
-use super::mpso::{Bounds, Swarm};
 use super::parameters::Tuning;
 use super::preview::{pose_errors, stacked_currents};
+use super::search::{Elite, Search};
 use super::{
     ControlError, ControllerParameters, Damping, Estimate, Estimator, ExternalReference, Fitness, ForceDistribution,
     Measurement, Reference, ReferencePoint, SensorFaults, SensorWatch, Sensors, SingularBasis, Situation,
@@ -27,7 +27,7 @@ pub struct Controller {
     /// Derived from `parameters`.
     model: PlantModel<f64>,
     reference: Reference<f64>,
-    swarm: Search,
+    search: Search,
     /// What changes from tick to tick.
     memory: Memory,
 }
@@ -38,8 +38,8 @@ struct Memory {
     watch: SensorWatch,
     sensors: Sensors,
     rng: Xoshiro256PlusPlus,
-    /// The last optimum, from which the next search starts.
-    particle: Option<[f64; 3]>,
+    /// What the last search leaves for the next.
+    elite: Elite,
     /// Voltages in force, V.
     voltages: [f64; 6],
     /// See [`Controller::work`].
@@ -70,7 +70,7 @@ impl From<Controller> for Saved {
 
 impl Clone for Controller {
     fn clone(&self) -> Self {
-        Self { swarm: self.swarm.clone(), memory: self.memory.clone(), ..*self }
+        Self { search: self.search.clone(), memory: self.memory.clone(), ..*self }
     }
 
     /// Keeps the swarm, a mere workspace, if it fits: so a backup at every step allocates nothing.
@@ -81,13 +81,6 @@ impl Clone for Controller {
             *self = source.clone();
         }
     }
-}
-
-/// The swarm's dimension depends on the motors: three motors have a force distribution to damp.
-#[derive(Debug, Clone)]
-enum Search {
-    Two(Swarm<2>),
-    Three(Swarm<3>),
 }
 
 /// What a tick leaves for the outputs.
@@ -119,16 +112,6 @@ pub struct Diagnostics<T = f64> {
     pub iterations: usize,
 }
 
-/// Dampings are searched as the largest times z^8, z in [0, 1]: nearly logarithmic where it
-/// matters, and zero is within reach. For delta_hd that means: no deceleration however small sigma_min is.
-///
-/// Squared thrice: the bits of `powi` are left open by its documentation.
-fn eighth_power(z: f64) -> f64 {
-    let square = z * z;
-    let fourth = square * square;
-    fourth * fourth
-}
-
 /// The prediction over a delay of one sample; the state is known less well than this.
 const PREDICTION: Settings<STATES> = Settings { tolerance: 1e-7, nominal: NOMINAL, max_step: f64::INFINITY };
 
@@ -148,12 +131,7 @@ impl Controller {
         let waypoints = parameters.waypoints.map(Vector3::from);
         let reference =
             Reference::new(waypoints, parameters.move_time, parameters.profile, model.geometry.joint_radius);
-        let settings = parameters.swarm.settings;
-        let swarm = if parameters.mechanism.revolute_motors {
-            Search::Two(Swarm::new(Bounds::new([0.0; 2], [1.0; 2])?, settings)?)
-        } else {
-            Search::Three(Swarm::new(Bounds::new([0.0; 3], [1.0; 3])?, settings)?)
-        };
+        let search = Search::new(parameters.swarm, parameters.mechanism.revolute_motors)?;
         let rng = Xoshiro256PlusPlus::seed_from_u64(parameters.seed);
         let mut sensor_rng = rng.clone();
         // a stream of its own, so that the swarm's luck does not depend on the sensors
@@ -163,11 +141,11 @@ impl Controller {
             watch: SensorWatch::new(parameters.sensor_timeout, parameters.sample_time, &parameters.sensors),
             sensors: Sensors::new(parameters.sensors, sensor_rng),
             rng,
-            particle: None,
+            elite: Elite::default(),
             voltages: [0.0; 6],
             work: 0,
         };
-        Ok(Self { parameters, model, reference, swarm, memory })
+        Ok(Self { parameters, model, reference, search, memory })
     }
 
     /// What the sensors would read of `measured` at the next tick, and the state estimated from it
@@ -288,7 +266,7 @@ impl Controller {
                 let target = self.reference_at(external, t + horizon, horizon);
                 let fitness =
                     Fitness::new(&self.model, &situation, &basis, &distribution, &target, tuning, sample_time);
-                self.search(&fitness, tuning)
+                self.search(&fitness, basis.sigma_min, tuning)
             }
         };
         let rho_hd = damping.rho_hd(basis.sigma_min, sample_time);
@@ -349,34 +327,14 @@ impl Controller {
     }
 
     /// The swarm's optimum: damping, fitness, iterations.
-    fn search(&mut self, fitness: &Fitness, tuning: &Tuning) -> (Damping<f64>, f64, usize) {
-        let Memory { rng, particle, work, .. } = &mut self.memory;
-        let largest = self.parameters.swarm.largest;
-        let damping = |z: [f64; 3]| Damping {
-            rho: largest.rho * eighth_power(z[0]),
-            delta_hd: largest.delta_hd * eighth_power(z[1]),
-            lambda_f: largest.lambda_f * eighth_power(z[2]),
-        };
-        let warm_start = *particle;
-        let (position, value, iterations) = match &mut self.swarm {
-            Search::Two(swarm) => {
-                // six motors do not damp their force distribution
-                let objective = |z: &[f64; 2]| fitness.evaluate(&damping([z[0], z[1], 0.0]));
-                let solution = swarm.minimize(rng, warm_start.map(|z| [z[0], z[1]]), objective);
-                ([solution.position[0], solution.position[1], 0.0], solution.value, solution.iterations)
-            }
-            Search::Three(swarm) => {
-                let solution = swarm.minimize(rng, warm_start, |z| fitness.evaluate(&damping(*z)));
-                (solution.position, solution.value, solution.iterations)
-            }
-        };
-        let evaluations = self.parameters.swarm.settings.swarm_size as u64 * (1 + iterations as u64);
-        *work = work.saturating_add(evaluations);
-        if !value.is_finite() {
-            return (tuning.fixed, value, iterations);
+    fn search(&mut self, fitness: &Fitness, sigma_min: f64, tuning: &Tuning) -> (Damping<f64>, f64, usize) {
+        let Memory { rng, elite, work, .. } = &mut self.memory;
+        let (damping, solution) = self.search.find(rng, elite, fitness, sigma_min);
+        *work = work.saturating_add(solution.evaluations as u64);
+        if !solution.value.is_finite() {
+            return (tuning.fixed, solution.value, solution.iterations);
         }
-        *particle = Some(position);
-        (damping(position), value, iterations)
+        (damping, solution.value, solution.iterations)
     }
 }
 

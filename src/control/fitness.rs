@@ -3,11 +3,13 @@
 //! The paper does not print its fitness. Here a damping is as good as the motion that it leads to:
 //! the currents that it asks for are limited to what the voltage limit can keep up, the mechanism
 //! answers with M^-1, and with that acceleration held for a horizon H the error against the
-//! reference there is weighed. What a tick's dampings share is computed once in [`Fitness::new`].
+//! reference there is weighed, and whether three motors can hold the pose there. What a tick's dampings share
+//! is computed once in [`Fitness::new`].
 
 use nalgebra::{Matrix3, Matrix3x6, Matrix6x3, Vector3, Vector6};
 
 use super::actuation::{back_emf, damp};
+use super::holding::Holding;
 use super::parameters::Tuning;
 use super::{Damping, ForceDistribution, ReferencePoint, SingularBasis, Situation};
 use crate::dynamics::{PlantModel, solve_positive_definite};
@@ -23,14 +25,14 @@ pub struct Fitness<'a> {
     lowest: Vector6<f64>,
     highest: Vector6<f64>,
     outlook: Outlook<f64>,
-    /// (1, r_b, r_b)
-    scale: Vector3<f64>,
 }
 
 /// Where the platform would be at the horizon without acceleration, against the reference there;
-/// everything scaled to m.
+/// errors scaled to m.
 #[derive(Debug, Clone, Copy)]
 struct Outlook<T> {
+    /// (1, r_b, r_b)
+    scale: Vector3<T>,
     /// m
     error: Vector3<T>,
     /// m/s
@@ -41,28 +43,37 @@ struct Outlook<T> {
     weight_velocity: T,
     /// s4
     weight_acceleration: T,
+    holding: Option<Holding<T>>,
 }
 
 impl<T: Scalar> Outlook<T> {
-    fn new(situation: &Situation<T>, ahead: &ReferencePoint<T>, tuning: &Tuning<T>, scale: &Vector3<T>) -> Self {
+    fn new(model: &PlantModel<T>, situation: &Situation<T>, ahead: &ReferencePoint<T>, tuning: &Tuning<T>) -> Self {
         let Tuning { horizon, weight_velocity, weight_acceleration, .. } = *tuning;
+        let scale = coordinate_scale(model);
         Self {
-            error: (ahead.position - situation.s - situation.s_dot * horizon).component_mul(scale),
-            rate_error: (ahead.rate - situation.s_dot).component_mul(scale),
+            scale,
+            error: (ahead.position - situation.s - situation.s_dot * horizon).component_mul(&scale),
+            rate_error: (ahead.rate - situation.s_dot).component_mul(&scale),
             horizon,
             weight_velocity,
             weight_acceleration,
+            holding: Holding::new(model, situation, ahead, horizon),
         }
     }
 
-    /// The fitness, m2, of a scaled `acceleration` (m/s2) held up to the horizon.
+    /// The fitness, m2, of an s_ddot ((m, rad, rad)/s2) held up to the horizon.
     #[inline]
-    fn weigh(&self, acceleration: &Vector3<T>) -> T {
+    fn weigh(&self, s_ddot: &Vector3<T>) -> T {
+        let acceleration = s_ddot.component_mul(&self.scale);
         let error = self.error - acceleration * (self.horizon * self.horizon * constant(0.5));
         let rate_error = self.rate_error - acceleration * self.horizon;
-        error.norm_squared()
+        let tracking = error.norm_squared()
             + self.weight_velocity * rate_error.norm_squared()
-            + self.weight_acceleration * acceleration.norm_squared()
+            + self.weight_acceleration * acceleration.norm_squared();
+        match &self.holding {
+            Some(holding) => tracking + holding.weigh(s_ddot),
+            None => tracking,
+        }
     }
 }
 
@@ -94,8 +105,7 @@ pub fn fitness_of_currents<T: Scalar>(
         - situation.dynamics.bias
         - situation.friction;
     let acceleration = solve_positive_definite(&situation.dynamics.mass_matrix, &force);
-    let scale = coordinate_scale(model);
-    Outlook::new(situation, ahead, tuning, &scale).weigh(&acceleration.component_mul(&scale))
+    Outlook::new(model, situation, ahead, tuning).weigh(&acceleration)
 }
 
 /// From the wanted s_ddot to the currents and back to the s_ddot that they cause.
@@ -131,7 +141,6 @@ impl<'a> Fitness<'a> {
         tuning: &Tuning,
         sample_time: f64,
     ) -> Self {
-        let scale = coordinate_scale(model);
         let mass = &situation.dynamics.mass_matrix;
         let inverse_mass = mass.try_inverse().unwrap_or_else(Matrix3::zeros);
         let load = situation.dynamics.bias + situation.friction;
@@ -153,8 +162,8 @@ impl<'a> Fitness<'a> {
             },
         };
         let (lowest, highest) = current_limits(model, situation);
-        let outlook = Outlook::new(situation, ahead, tuning, &scale);
-        Self { basis, actuators, sample_time, lowest, highest, outlook, scale }
+        let outlook = Outlook::new(model, situation, ahead, tuning);
+        Self { basis, actuators, sample_time, lowest, highest, outlook }
     }
 
     /// The fitness of `damping`, m2; smaller is better.
@@ -167,8 +176,7 @@ impl<'a> Fitness<'a> {
     /// The fitness of asking for s_ddot = `wanted`, (m, rad, rad)/s2, in whatever way it was found.
     #[inline]
     pub fn of_acceleration(&self, wanted: &Vector3<f64>, lambda_f: f64) -> f64 {
-        let acceleration = self.respond(wanted, lambda_f).component_mul(&self.scale);
-        self.outlook.weigh(&acceleration)
+        self.outlook.weigh(&self.respond(wanted, lambda_f))
     }
 
     /// s_ddot that the limited motors cause when `wanted` is asked for.

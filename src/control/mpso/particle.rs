@@ -60,9 +60,10 @@ impl<const D: usize> Motion<D> {
 }
 
 impl<const D: usize> Particle<D> {
-    /// Puts a fresh individual somewhere else.
+    /// Puts a fresh individual somewhere else, at rest: what is known to be good is searched from close by.
     pub fn place(&mut self, position: [f64; D]) {
         self.position = position;
+        self.velocity = [0.0; D];
     }
 
     /// Takes note of the error at the present position: pbest of (3.1).

@@ -7,7 +7,7 @@ use super::rank::Ranking;
 use super::{Bounds, DecaySchedule, Selection, Settings, SettingsError, inertia};
 
 /// A modified particle swarm over a box in `D` dimensions: settings and workspace. It keeps
-/// nothing from one search for the next; pass the last optimum as the warm start for that.
+/// nothing from one search for the next; pass the last optimum as a start for that.
 #[derive(Debug, Clone)]
 pub struct Swarm<const D: usize> {
     settings: Settings,
@@ -66,28 +66,29 @@ impl<const D: usize> Swarm<D> {
 
     /// Searches the minimum of `objective`.
     ///
-    /// `warm_start`, clamped to the bounds, is one of the initial individuals; it is ignored if a
-    /// member is not finite. Values of the objective that are not finite count as worst.
+    /// The initial swarm begins with `starts`, clamped to the bounds, as far as there is room; those
+    /// with a member that is not finite are left out. The others are scattered over the box. Values of
+    /// the objective that are not finite count as worst.
     pub fn minimize(
         &mut self,
         rng: &mut impl Rng,
-        warm_start: Option<[f64; D]>,
+        starts: &[[f64; D]],
         objective: impl FnMut(&[f64; D]) -> f64,
     ) -> Solution<D> {
-        self.minimize_observed(rng, warm_start, objective, |_| {})
+        self.minimize_observed(rng, starts, objective, |_| {})
     }
 
     /// [`minimize`](Self::minimize) that tells `observer` about the initial swarm and every iteration.
     pub fn minimize_observed(
         &mut self,
         rng: &mut impl Rng,
-        warm_start: Option<[f64; D]>,
+        starts: &[[f64; D]],
         mut objective: impl FnMut(&[f64; D]) -> f64,
         mut observer: impl FnMut(&Progress),
     ) -> Solution<D> {
         let size = self.settings.swarm_size;
         let mut decay = DecaySchedule::new(&self.settings);
-        let mut best = self.populate(rng, warm_start, &mut objective);
+        let mut best = self.populate(rng, starts, &mut objective);
         let mut iterations = 0;
         let mut stalled = 0;
         observer(&Progress { iteration: 0, best_value: best.error, decay_scale: decay.scale() });
@@ -110,7 +111,7 @@ impl<const D: usize> Swarm<D> {
     fn populate(
         &mut self,
         rng: &mut impl Rng,
-        warm_start: Option<[f64; D]>,
+        starts: &[[f64; D]],
         objective: &mut impl FnMut(&[f64; D]) -> f64,
     ) -> Best<D> {
         // The order a former search left behind must not matter.
@@ -121,8 +122,9 @@ impl<const D: usize> Swarm<D> {
         for particle in &mut self.particles[..size] {
             *particle = self.motion.scatter(rng);
         }
-        if let Some(start) = warm_start.filter(|start| start.iter().all(|x| x.is_finite())) {
-            self.particles[0].place(self.motion.bounds.clamp(&start));
+        let finite = starts.iter().filter(|start| start.iter().all(|x| x.is_finite()));
+        for (particle, start) in self.particles[..size].iter_mut().zip(finite) {
+            particle.place(self.motion.bounds.clamp(start));
         }
         let mut best = Best { index: 0, position: self.particles[0].position, error: f64::INFINITY };
         for index in 0..size {
@@ -216,7 +218,7 @@ mod tests {
         let mut swarm = Swarm::new(Bounds::new([-1.0; 2], [1.0; 2]).unwrap(), settings).unwrap();
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(1);
         let mut bowl = |x: &[f64; 2]| x[0] * x[0] + x[1] * x[1];
-        let mut best = swarm.populate(&mut rng, None, &mut bowl);
+        let mut best = swarm.populate(&mut rng, &[], &mut bowl);
         for _ in 0..20 {
             swarm.procreate(&mut rng, 0.7, &mut best, &mut bowl);
             swarm.select(&best, 1e3);

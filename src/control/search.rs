@@ -1,0 +1,142 @@
+//! The swarm's search for the damping of a tick: scales of the particle's members and initial individuals.
+
+use rand::Rng;
+use rand::distr::{Distribution, StandardUniform};
+use serde::{Deserialize, Serialize};
+
+use super::mpso::{Bounds, SettingsError, Solution, Swarm};
+use super::parameters::SwarmParameters;
+use super::{Damping, Fitness};
+
+/// A swarm over (rho, delta_hd) for six motors; three have a force distribution to damp as well.
+#[derive(Debug, Clone)]
+pub(super) struct Search {
+    swarm: Members,
+    parameters: SwarmParameters,
+}
+
+#[derive(Debug, Clone)]
+enum Members {
+    Two(Swarm<2>),
+    Three(Swarm<3>),
+}
+
+/// Where the searches so far ended: the best particle of each quarter of (rho, delta_hd) at the last tick that
+/// looked there. The fitness can have a valley in each, and which one is lowest changes from tick to tick.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(super) struct Elite {
+    /// Members within [0, 1]; the third is 0 with six motors.
+    particles: [[f64; 3]; QUARTERS],
+    /// The best of them.
+    best: usize,
+}
+
+const QUARTERS: usize = 4;
+/// Initial individuals around the last optimum, each within half the distance of the one before, from
+/// [`FARTHEST`] on: the optimum moves little from tick to tick as a rule, and sometimes it leaps.
+const NEIGHBOURS: usize = 7;
+const FARTHEST: f64 = 0.2;
+/// Initial individuals that are no random ones, at most.
+const STARTS: usize = QUARTERS + NEIGHBOURS;
+/// A sigma_min that small is no other than zero.
+const SMALLEST_SIGMA: f64 = 1e-12;
+
+impl Search {
+    /// # Errors
+    /// The first setting that is out of its range.
+    pub fn new(parameters: SwarmParameters, revolute_motors: bool) -> Result<Self, SettingsError> {
+        let settings = parameters.settings;
+        let swarm = if revolute_motors {
+            Members::Two(Swarm::new(Bounds::new([0.0; 2], [1.0; 2])?, settings)?)
+        } else {
+            Members::Three(Swarm::new(Bounds::new([0.0; 3], [1.0; 3])?, settings)?)
+        };
+        Ok(Self { swarm, parameters })
+    }
+
+    /// The damping of least `fitness` at `sigma_min`, starting from the `elite` of the search before.
+    pub fn find(
+        &mut self,
+        rng: &mut impl Rng,
+        elite: &mut Elite,
+        fitness: &Fitness,
+        sigma_min: f64,
+    ) -> (Damping<f64>, Solution<3>) {
+        let Self { swarm, parameters: SwarmParameters { settings, largest } } = self;
+        // the rest of the swarm is scattered over all dampings
+        let known = STARTS.min(settings.swarm_size * 2 / 3);
+        let starts = elite.starts(rng);
+        let mut least = [f64::INFINITY; QUARTERS];
+        let mut value = |z: &[f64; 3]| {
+            let value = fitness.evaluate(&damping(z, largest, sigma_min));
+            let quarter = Elite::quarter(z);
+            if value < least[quarter] {
+                (least[quarter], elite.particles[quarter]) = (value, *z);
+            }
+            value
+        };
+        let solution = match swarm {
+            Members::Two(swarm) => {
+                let starts = starts.map(|[x, y, _]| [x, y]);
+                let Solution { position: [x, y], value, iterations, evaluations } =
+                    swarm.minimize(rng, &starts[..known], |[x, y]| value(&[*x, *y, 0.0]));
+                Solution { position: [x, y, 0.0], value, iterations, evaluations }
+            }
+            Members::Three(swarm) => swarm.minimize(rng, &starts[..known], value),
+        };
+        elite.best = Elite::quarter(&solution.position);
+        (damping(&solution.position, largest, sigma_min), solution)
+    }
+}
+
+impl Elite {
+    fn quarter(z: &[f64; 3]) -> usize {
+        usize::from(z[0] > 0.5) + 2 * usize::from(z[1] > 0.5)
+    }
+
+    /// Initial individuals: the elite, the best first, and neighbours of the best.
+    fn starts(&self, rng: &mut impl Rng) -> [[f64; 3]; STARTS] {
+        let best = self.particles[self.best];
+        let mut starts = [best; STARTS];
+        starts[..QUARTERS].copy_from_slice(&self.particles);
+        starts.swap(0, self.best);
+        let mut distance = FARTHEST;
+        for start in &mut starts[QUARTERS..] {
+            for x in start {
+                let uniform: f64 = StandardUniform.sample(rng);
+                *x += distance * (2.0 * uniform - 1.0);
+            }
+            distance *= 0.5;
+        }
+        starts
+    }
+}
+
+impl Default for Elite {
+    /// Before the first search: the middle of each quarter.
+    fn default() -> Self {
+        let particles = [[0.25, 0.25, 0.5], [0.75, 0.25, 0.5], [0.25, 0.75, 0.5], [0.75, 0.75, 0.5]];
+        Self { particles, best: 0 }
+    }
+}
+
+/// The damping of a particle with members in [0, 1].
+///
+/// rho and lambda_f act over decades, three and six of them: as powers of a member they have room where they
+/// are small, and zero is within reach. delta_hd acts only by rho_hd, and not at all below
+/// sigma_min; its member is the fourth root of rho_hd's share in the largest possible.
+fn damping(z: &[f64; 3], largest: &Damping<f64>, sigma_min: f64) -> Damping<f64> {
+    let square = z.map(|z| z * z);
+    let share = square[1] * square[1];
+    let sigma = sigma_min.max(SMALLEST_SIGMA);
+    let delta_hd = if sigma < largest.delta_hd {
+        (sigma / (1.0 - share * (1.0 - sigma / largest.delta_hd))).min(largest.delta_hd)
+    } else {
+        largest.delta_hd * share
+    };
+    Damping {
+        rho: largest.rho * square[0] * z[0],
+        delta_hd,
+        lambda_f: largest.lambda_f * square[2] * square[2] * square[2],
+    }
+}
