@@ -24,7 +24,7 @@ fn defines(source: &str, name: &str) -> bool {
 fn every_function_and_test_that_the_documents_name_exists() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut missing = Vec::new();
-    for document in ["docs/paper-map.md", "docs/errata.md", "docs/theory.md"] {
+    for document in ["docs/paper-map.md", "docs/errata.md", "docs/theory.md", "docs/control.md"] {
         let text = std::fs::read_to_string(root.join(document)).unwrap();
         for (path, name) in references(&text) {
             let found = std::fs::read_to_string(root.join(path)).is_ok_and(|source| defines(&source, name));
