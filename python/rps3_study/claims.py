@@ -187,7 +187,7 @@ def _varies(results: Results, variant: str) -> Check:
     low, high = results.passages["constant_speed", variant][MPSO].rho
     # decades: the percentiles themselves hang on the swarm's luck
     below, above = (10.0 ** f(np.log10(max(rho, 1e-3))) for f, rho in ((np.ceil, low), (np.floor, high)))
-    text = f"{SHORT[variant]}: a tenth of the samples below {number(below)}, a tenth above {number(above)}"
+    text = f"{SHORT[variant]}: below {number(below)} in a tenth of the samples, at least {number(above)} in another"
     return Check(text, high > 2.0 * low)
 
 
