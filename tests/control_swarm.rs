@@ -111,7 +111,7 @@ fn six_motors_find_the_dense_grids_optimum_within_1_percent_in_99_percent_of_the
 }
 
 /// Three motors have a third member, and a fitness with a valley in more than one quarter of (rho, delta_hd). Once the
-/// reference rests and the error is below a nanometre, valleys that differ by some per cent are not told apart at every tick.
+/// reference rests and the error is below a micrometre, valleys that differ by some per cent are not told apart at every tick.
 #[test]
 fn three_motors_find_the_dense_grids_optimum_within_1_percent_in_99_percent_of_the_ticks_in_motion() {
     let ratios = ratios(false, 5, (100, 40, 50));
