@@ -1,6 +1,6 @@
 //! From names of the variable tables to slots of [`Values`].
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use crate::description::{Causality, Definition, VariableType};
 use crate::fmi2::Values;
@@ -25,7 +25,7 @@ pub fn boolean(definition: &Definition, name: &str) -> usize {
 }
 
 /// The slots of all Real parameters, by name.
-pub fn real_parameters(definition: &Definition) -> HashMap<String, usize> {
+pub fn real_parameters(definition: &Definition) -> BTreeMap<String, usize> {
     let parameters = definition
         .variables
         .iter()

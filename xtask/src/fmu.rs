@@ -6,7 +6,8 @@ use anyhow::{Context, Result};
 
 use crate::archive::Archive;
 use crate::library::Build;
-use crate::{platform, workspace};
+use crate::platform::Platform;
+use crate::workspace;
 
 /// One of the FMUs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,21 +51,21 @@ impl Fmu {
         fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))
     }
 
-    /// The FMU's archive for the host's platform (FMI 2.0, section 2.3.1), without what is only known from its
-    /// runs: see [`crate::documentation`]. What lies in
-    /// `fmus/<component>/archive/` goes in as it is.
+    /// The FMU's archive with the libraries of all `builds` (FMI 2.0, section 2.3.1), without what is only known from
+    /// its runs: see [`crate::documentation`]. What lies in `fmus/<component>/archive/` goes in as it is.
     ///
     /// # Errors
-    /// When a part is missing or the platform has no name in FMI 2.0.
-    pub fn archive(&self, build: &Build) -> Result<Archive> {
-        let platform = platform::host()?;
-        let library =
-            build.libraries.get(self.identifier).with_context(|| format!("no library {}", self.identifier))?;
-        let binary = format!("binaries/{}/{}.{}", platform.directory, self.identifier, platform.extension);
+    /// When a part is missing.
+    pub fn archive(&self, builds: &[Build]) -> Result<Archive> {
         let mut archive = Archive::default();
         archive.insert_tree(&workspace::root().join("fmus").join(self.component).join("archive"))?;
-        archive.insert("modelDescription.xml", self.description(build)?);
-        archive.insert_file(binary, library)?;
+        for build in builds {
+            let Platform { directory, extension } = build.platform;
+            let library = build.libraries.get(self.identifier);
+            let library = library.with_context(|| format!("no library {} for {directory}", self.identifier))?;
+            archive.insert("modelDescription.xml", self.description(build)?);
+            archive.insert_file(format!("binaries/{directory}/{}.{extension}", self.identifier), library)?;
+        }
         archive.insert("documentation/licenses/license.txt", LICENSE);
         for license in ["LICENSE-MIT", "LICENSE-APACHE"] {
             archive.insert_file(format!("documentation/licenses/{license}.txt"), &workspace::root().join(license))?;

@@ -1,15 +1,14 @@
 //! The license texts of every crate that is linked into the FMUs.
 
-use std::collections::BTreeSet;
 use std::fs;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result, ensure};
-use cargo_metadata::{MetadataCommand, Package};
+use cargo_metadata::Package;
 use serde::Serialize;
 
 use crate::archive::Archive;
-use crate::{command, workspace};
+use crate::linked::Linked;
 
 /// A linked crate, as the documentation's table names it.
 #[derive(Debug, Serialize)]
@@ -48,18 +47,12 @@ impl Crate {
     }
 }
 
-/// All crates that are linked into the FMUs for the host, by name.
+/// The licenses of linked crates.
 ///
 /// # Errors
-/// When cargo fails or a crate comes without license.
-pub fn linked() -> Result<Vec<Crate>> {
-    let linked = linked_names()?;
-    let metadata = MetadataCommand::new().current_dir(workspace::root()).exec()?;
-    let foreign = metadata.packages.iter().filter(|package| package.source.is_some());
-    let mut packages: Vec<_> =
-        foreign.filter(|package| linked.contains(&(package.name.to_string(), package.version.to_string()))).collect();
-    packages.sort_by_key(|package| (package.name.to_string(), package.version.clone()));
-    packages.into_iter().map(Crate::new).collect()
+/// When a crate comes without.
+pub fn of(crates: &Linked) -> Result<Vec<Crate>> {
+    crates.packages.iter().map(Crate::new).collect()
 }
 
 /// Adds the license texts of `crates` to an FMU's archive.
@@ -73,22 +66,6 @@ pub fn insert(archive: &mut Archive, crates: &[Crate]) -> Result<()> {
     Ok(())
 }
 
-/// Name and version of what `cargo tree` finds linked: unlike the metadata it leaves out what only tests,
-/// build scripts and macros use, and optional parts that the FMUs do not switch on.
-fn linked_names() -> Result<BTreeSet<(String, String)>> {
-    let mut tree = command::cargo(&["tree", "--package=rps3-plant", "--package=rps3-controller"]);
-    let output = tree.args(["--edges=normal,no-proc-macro", "--prefix=none", "--format={p}"]).output()?;
-    ensure!(output.status.success(), "cargo tree failed: {}", String::from_utf8_lossy(&output.stderr));
-    Ok(names_in(&String::from_utf8(output.stdout)?))
-}
-
-fn names_in(tree: &str) -> BTreeSet<(String, String)> {
-    let words = tree.lines().map(str::split_whitespace);
-    words
-        .filter_map(|mut words| Some((words.next()?.to_owned(), words.next()?.strip_prefix('v')?.to_owned())))
-        .collect()
-}
-
 fn is_license(file: &str) -> bool {
     let name = file.to_uppercase();
     ["LICENSE", "LICENCE", "COPYING", "COPYRIGHT", "NOTICE", "UNLICENSE"].iter().any(|start| name.starts_with(start))
@@ -97,17 +74,11 @@ fn is_license(file: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn crates_of_a_tree_are_named_once_with_their_versions() {
-        let tree = "rps3-plant v0.1.0 (/somewhere)\nlibc v0.2.1\nserde v1.0.2\nlibc v0.2.1 (*)\n\n";
-        let expected = [("libc", "0.2.1"), ("rps3-plant", "0.1.0"), ("serde", "1.0.2")];
-        assert_eq!(names_in(tree), expected.map(|(name, version)| (name.into(), version.into())).into());
-    }
+    use crate::linked;
 
     #[test]
     fn every_linked_crate_brings_its_license() {
-        let crates = linked().unwrap();
+        let crates = of(&linked::crates(&[]).unwrap()).unwrap();
         assert!(crates.iter().any(|one| one.name == "nalgebra"));
         assert!(crates.iter().all(|one| !one.name.starts_with("rps3") && !one.sources.is_empty()));
     }

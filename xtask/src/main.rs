@@ -4,6 +4,7 @@
 
 mod analysis;
 mod archive;
+mod audit;
 mod bench;
 mod command;
 mod demo;
@@ -14,13 +15,16 @@ mod fuzz;
 mod instructions;
 mod library;
 mod licenses;
+mod linked;
 mod lint;
 mod masters;
 mod package;
 mod platform;
 mod python;
+mod sbom;
 mod setup;
 mod ssp;
+mod targets;
 mod test;
 mod workspace;
 
@@ -41,7 +45,7 @@ enum Task {
     Setup,
     /// Refresh modelDescription/*.xml from the variable tables
     Describe,
-    /// Build both FMUs and the SSP package into dist/
+    /// Build both FMUs and the SSP package into dist/, for this machine or for all platforms
     Package(package::Options),
     /// Couple the packaged FMUs through the singularity and write dist/report/
     Demo(demo::Options),
@@ -57,6 +61,8 @@ enum Task {
     Instructions(instructions::Options),
     /// Measure against other engines and masters: dist/bench/
     Bench(bench::Options),
+    /// Check the licenses, sources and advisories of all dependencies with cargo-deny
+    Audit(audit::Options),
     /// Run the fuzz targets under libFuzzer
     Fuzz(fuzz::Options),
     /// Check format, lints, documentation and Python code
@@ -75,6 +81,7 @@ fn main() -> ExitCode {
         Task::Test(options) => test::run(&options),
         Task::Instructions(options) => instructions::run(&options),
         Task::Bench(options) => bench::run(&options),
+        Task::Audit(options) => audit::run(&options),
         Task::Fuzz(options) => fuzz::run(&options),
         Task::Lint => lint::run(),
     };

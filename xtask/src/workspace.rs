@@ -12,6 +12,11 @@ pub fn dist() -> PathBuf {
     root().join("dist")
 }
 
+/// Where the archives with binaries for all platforms go.
+pub fn release() -> PathBuf {
+    dist().join("all-targets")
+}
+
 /// The virtual environment of tests and demo.
 pub fn venv() -> PathBuf {
     root().join(".venv")

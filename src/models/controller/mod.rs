@@ -3,7 +3,7 @@
 mod dependencies;
 pub mod table;
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 use num_dual::Dual64;
@@ -53,8 +53,8 @@ struct Slots {
     in_singular_region: usize,
     sensor_fault: usize,
     revolute_motors: usize,
-    reals: HashMap<String, usize>,
-    integers: HashMap<&'static str, usize>,
+    reals: BTreeMap<String, usize>,
+    integers: BTreeMap<&'static str, usize>,
     tuning: TuningSlots,
 }
 

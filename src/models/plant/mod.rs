@@ -4,7 +4,7 @@ mod dependencies;
 mod outputs;
 pub mod table;
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 use num_dual::Dual64;
@@ -69,7 +69,7 @@ struct Slots {
     revolute_motors: usize,
     settled_start: usize,
     /// Of the Real parameters, by name.
-    parameters: HashMap<String, usize>,
+    parameters: BTreeMap<String, usize>,
 }
 
 fn table() -> &'static (Definition, Slots) {
