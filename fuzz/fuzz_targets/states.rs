@@ -1,5 +1,7 @@
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| {
+mod report;
+
+libfuzzer_sys::fuzz_target!(init: report::at_exit(), |data: &[u8]| {
     rps3_fuzz::states(data);
 });

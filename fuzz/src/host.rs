@@ -11,6 +11,7 @@ use rps3::fmi2::{Lasting, Layout, Model};
 use rps3::models::{Controller, Plant};
 
 use super::numbers;
+use super::tally::{TALLY, count};
 
 /// A model with the place that the export macro would give its layout.
 pub trait Fmu: Model {
@@ -37,7 +38,7 @@ const LONGEST_CALL: f64 = 120.0;
 
 /// # Safety
 /// As the FMI logger; `environment` points to the number of messages.
-unsafe extern "C" fn count(
+unsafe extern "C" fn hear(
     environment: *mut c_void,
     instance: *const c_char,
     status: c_int,
@@ -104,7 +105,7 @@ impl<M: Fmu> Host<M> {
             std::mem::transmute::<
                 unsafe extern "C" fn(*mut c_void, *const c_char, c_int, *const c_char, *const c_char, *const c_char),
                 LoggerCallback,
-            >(count)
+            >(hear)
         };
         let callbacks = CallbackFunctions {
             logger: Some(logger),
@@ -147,9 +148,13 @@ impl<M: Fmu> Host<M> {
 
     /// Makes a call as `function` and checks what must hold whatever the arguments.
     pub fn checked(&mut self, function: Function, call: impl FnOnce(Component) -> Status) -> Status {
+        if function == Function::DeSerializeFmuState {
+            count(&TALLY.states);
+        }
         let before = self.fingerprint();
         let messages = *self.messages;
         let begin = cpu_time();
+        count(&TALLY.calls);
         let status = call(self.component);
         let took = cpu_time() - begin;
         assert!(took < LONGEST_CALL, "{} took {took} s", function.name());

@@ -14,7 +14,9 @@ mod host;
 mod numbers;
 mod parameters;
 mod states;
+mod tally;
 
 pub use calls::calls;
 pub use parameters::parameters;
 pub use states::states;
+pub use tally::TALLY;

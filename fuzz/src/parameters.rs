@@ -11,6 +11,7 @@ use rps3::models::{Controller, Plant};
 
 use super::host::{Fmu, Host, call};
 use super::numbers;
+use super::tally::{TALLY, count};
 
 /// Initializes an FMU with parameters and inputs as the bytes say and makes ten steps of 1 ms, or
 /// takes the derivatives in Model Exchange. Tells how that ended.
@@ -50,6 +51,7 @@ fn run<M: Fmu>(u: &mut Unstructured, interface: Interface) -> Result<Status> {
             }
         }
     }
+    count(&TALLY.parameters);
     let status = host.initialize(0.0);
     if status != Status::Ok {
         return Ok(status);

@@ -85,7 +85,7 @@ impl<T: Scalar> EndStops<T> {
             width: constant::<T>(WIDTH) / lever,
         };
         let quarter_turn = constant::<T>(std::f64::consts::FRAC_PI_2);
-        let sine = |angle: T| angle.max(-quarter_turn).min(quarter_turn).sin();
+        let sine = |angle: T| angle.max(-quarter_turn).min(quarter_turn).sine_cosine().0;
         Self {
             length: stop(parameters.d_min, parameters.d_max, T::one()),
             angle: stop(parameters.theta_min, parameters.theta_max, lever),

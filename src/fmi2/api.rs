@@ -2,21 +2,23 @@
 //!
 //! # Safety
 //! What the standard asks of the caller holds for every function here: a component is null or came
-//! from [`instantiate`] of the same model and was not freed, one thread at a time uses it, arrays
-//! have the stated lengths, strings end with NUL. All else (null pointers, wrong references, wrong
-//! order, non-finite numbers, corrupted states) is checked.
+//! from [`instantiate`], of this model or another, and was not freed, arrays have the stated lengths,
+//! strings end with NUL, and the logger returns. All else (null pointers, wrong references, wrong order,
+//! non-finite numbers, corrupted states, components of another FMU, calls from within the logger or
+//! from two threads at once) is checked.
 #![allow(clippy::missing_safety_doc)] // said once, above
 #![allow(clippy::too_many_arguments)] // the standard's signatures
 
 use std::ffi::{CStr, c_char, c_int};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use super::boundary::{enter, panic_message, slice, slice_mut, target, text};
+use super::boundary::{apart, array, enter, panic_message, slice, slice_mut, target, text};
 use super::call_table::Function;
 use super::co_simulation::no_such_status;
 use super::error::{CallError, CallResult};
+use super::handle::Handle;
 use super::instance::Instance;
-use super::lasting::{self, Lasting};
+use super::lasting::{Lasting, Stay};
 use super::layout::Layout;
 use super::logger::Logger;
 use super::model::Model;
@@ -46,23 +48,34 @@ pub unsafe fn instantiate<M: Model>(
     layout: &'static Lasting<Layout>,
 ) -> Component {
     // SAFETY: the caller's promise (module documentation).
-    let (name, guid, callbacks) = unsafe { (text(instance_name), text(guid), functions.as_ref().copied()) };
-    let logger = Logger::new(callbacks, name.unwrap_or_default(), logging_on != FALSE);
+    let (name, guid) = unsafe { (text(instance_name), text(guid)) };
+    if !functions.is_aligned() {
+        return std::ptr::null_mut();
+    }
+    // SAFETY: as above; aligned as just checked.
+    let callbacks = unsafe { functions.as_ref() }.copied();
     let instance = catch_unwind(AssertUnwindSafe(|| {
-        let interface = check_instantiation::<M>(name, fmu_type, guid)?;
-        let layout = layout.get_or_init(|| Layout::new(M::definition()));
-        Ok(Box::new(Instance::<M>::new(interface, layout, logger.clone())))
+        let logger = Logger::new(callbacks, name.unwrap_or_default(), logging_on != FALSE);
+        let made = check_instantiation::<M>(name, fmu_type, guid).and_then(|interface| {
+            let stay = Stay::begin().ok_or_else(|| CallError::refused("the library is being unloaded"))?;
+            let layout = layout.get_or_init(|| Layout::new(M::definition()));
+            Ok(Handle::hand_out(Instance::<M>::new(interface, layout, logger.clone()), stay))
+        });
+        made.unwrap_or_else(|refusal| {
+            logger.log(Status::Error, LogCategory::StatusError, &format!("fmi2Instantiate: {refusal}"));
+            std::ptr::null_mut()
+        })
     }));
-    let refusal: CallError = match instance {
-        Ok(Ok(instance)) => {
-            lasting::instance_made();
-            return Box::into_raw(instance).cast();
-        }
-        Ok(Err(error)) => error,
-        Err(payload) => CallError::Failed(format!("internal error: {}", panic_message(&*payload))),
-    };
-    logger.log(Status::Error, LogCategory::StatusError, &format!("fmi2Instantiate: {refusal}"));
-    std::ptr::null_mut()
+    instance.unwrap_or_else(|payload| {
+        // as in `enter`: neither the report nor the payload may panic across the border
+        let _ = catch_unwind(AssertUnwindSafe(|| {
+            let message = format!("fmi2Instantiate: internal error: {}", panic_message(&*payload));
+            let logger = Logger::new(callbacks, name.unwrap_or_default(), logging_on != FALSE);
+            logger.log(Status::Error, LogCategory::StatusError, &message);
+        }));
+        let _ = catch_unwind(AssertUnwindSafe(|| drop(payload)));
+        std::ptr::null_mut()
+    })
 }
 
 fn check_instantiation<M: Model>(name: Option<&CStr>, fmu_type: c_int, guid: Option<&CStr>) -> CallResult<Interface> {
@@ -80,14 +93,13 @@ fn check_instantiation<M: Model>(name: Option<&CStr>, fmu_type: c_int, guid: Opt
     }
 }
 
-/// `fmi2FreeInstance`; ignores null, and frees in every mode, since a leak would help nobody.
+/// `fmi2FreeInstance`; ignores null, and frees in every mode, since a leak would help nobody. Only
+/// an instance with a call under way stays: the call will want it when the logger returns.
 pub unsafe fn free_instance<M: Model>(component: Component) {
-    if !component.is_null() {
-        // SAFETY: not null, so it came from `Box::into_raw` in `instantiate` (module documentation).
-        let instance = unsafe { Box::from_raw(component.cast::<Instance<M>>()) };
+    // SAFETY: the caller's promise (module documentation).
+    if let Some(handle) = unsafe { Handle::<M>::take_back(component) } {
         // A destructor that panics has no one to report to.
-        let _ = catch_unwind(AssertUnwindSafe(|| drop(instance)));
-        lasting::instance_freed();
+        let _ = catch_unwind(AssertUnwindSafe(|| drop(handle)));
     }
 }
 
@@ -138,16 +150,19 @@ on_instance! {
 
     /// `fmi2GetReal`
     get_real(instance, vr: *const ValueReference, count: usize, value: *mut f64) as GetReal {
+        apart(array(value, count, "value"), &[array(vr, count, "vr")])?;
         instance.get_real(slice(vr, count, "vr")?, slice_mut(value, count, "value")?)
     }
 
     /// `fmi2GetInteger`
     get_integer(instance, vr: *const ValueReference, count: usize, value: *mut c_int) as GetInteger {
+        apart(array(value, count, "value"), &[array(vr, count, "vr")])?;
         instance.get_integer(slice(vr, count, "vr")?, slice_mut(value, count, "value")?)
     }
 
     /// `fmi2GetBoolean`
     get_boolean(instance, vr: *const ValueReference, count: usize, value: *mut Boolean) as GetBoolean {
+        apart(array(value, count, "value"), &[array(vr, count, "vr")])?;
         instance.get_boolean(slice(vr, count, "vr")?, slice_mut(value, count, "value")?)
     }
 
@@ -188,10 +203,13 @@ on_instance! {
 
     /// `fmi2FreeFMUstate`; ignores null.
     free_fmu_state(instance, state: *mut FmuState) as FreeFmuState {
-        if state.is_null() || (*state).is_null() {
+        if state.is_null() {
             return Ok(());
         }
         let state = target(state, "FMUstate")?;
+        if state.is_null() {
+            return Ok(());
+        }
         instance.free_fmu_state(*state)?;
         *state = std::ptr::null_mut();
         Ok(())
@@ -215,9 +233,9 @@ on_instance! {
 
     /// `fmi2DeSerializeFMUstate`
     deserialize_fmu_state(instance, bytes: *const u8, size: usize, state: *mut FmuState) as DeSerializeFmuState {
+        target(state, "FMUstate")?;
         let bytes = slice(bytes, size, "serializedState")?;
-        let state = target(state, "FMUstate")?;
-        *state = instance.deserialize(bytes)?;
+        *target(state, "FMUstate")? = instance.deserialize(bytes)?;
         Ok(())
     }
 
@@ -226,6 +244,10 @@ on_instance! {
         instance, unknowns: *const ValueReference, unknown_count: usize, knowns: *const ValueReference, known_count: usize,
         seed: *const f64, derivative: *mut f64
     ) as GetDirectionalDerivative {
+        let results = array(derivative, unknown_count, "dvUnknown");
+        let references = [array(unknowns, unknown_count, "vUnknown_ref"), array(knowns, known_count, "vKnown_ref")];
+        apart(results, &references)?;
+        apart(results, &[array(seed, known_count, "dvKnown")])?;
         instance.get_directional_derivative(
             slice(unknowns, unknown_count, "vUnknown_ref")?,
             slice(knowns, known_count, "vKnown_ref")?,
@@ -251,10 +273,9 @@ on_instance! {
     completed_integrator_step(
         _instance, _no_set_fmu_state: Boolean, enter_event_mode: *mut Boolean, terminate: *mut Boolean
     ) as CompletedIntegratorStep {
-        let (enter_event_mode, terminate) =
-            (target(enter_event_mode, "enterEventMode")?, target(terminate, "terminateSimulation")?);
-        *enter_event_mode = FALSE;
-        *terminate = FALSE;
+        target(terminate, "terminateSimulation")?;
+        *target(enter_event_mode, "enterEventMode")? = FALSE;
+        *target(terminate, "terminateSimulation")? = FALSE;
         Ok(())
     }
 
@@ -301,6 +322,7 @@ on_instance! {
     get_real_output_derivatives(
         instance, vr: *const ValueReference, count: usize, order: *const c_int, value: *mut f64
     ) as GetRealOutputDerivatives {
+        apart(array(value, count, "value"), &[array(vr, count, "vr"), array(order, count, "order")])?;
         instance.get_real_output_derivatives(
             slice(vr, count, "vr")?,
             slice(order, count, "order")?,

@@ -6,22 +6,26 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use super::call_table::Function;
 use super::error::{CallError, CallResult};
+use super::handle::Handle;
 use super::instance::Instance;
 use super::model::Model;
 use super::types::{Component, Status};
 
-/// Runs `body` on the instance behind `component`: null check, call table, panic boundary.
+/// Runs `body` on the instance behind `component`: checks of the pointer, call table, panic boundary.
+///
+/// A wrong pointer, and a call while another is under way, are `fmi2Error` without a message: there
+/// is no logger, or it is where the call came from.
 ///
 /// # Safety
-/// `component` is null or came from `fmi2Instantiate` of the same model, was not freed, and no
-/// other thread uses it during the call.
+/// `component` is null or came from `fmi2Instantiate` and was not freed.
 pub(super) unsafe fn enter<M: Model>(
     component: Component,
     function: Function,
     body: impl FnOnce(&mut Instance<M>) -> CallResult,
 ) -> Status {
-    // SAFETY: the caller's promise; null becomes None.
-    let Some(instance) = (unsafe { component.cast::<Instance<M>>().as_mut() }) else { return Status::Error };
+    // SAFETY: the caller's promise.
+    let handle = unsafe { Handle::<M>::behind(component) };
+    let Some(mut instance) = handle.and_then(Handle::lock) else { return Status::Error };
     // An unwound instance is poisoned, so that no half-done change is ever seen.
     match catch_unwind(AssertUnwindSafe(|| instance.call(function, body))) {
         Ok(status) => status,
@@ -89,6 +93,25 @@ fn check_array<T>(pointer: *const T, length: usize, name: &str) -> CallResult {
     } else {
         Ok(())
     }
+}
+
+/// An array that a caller passed, as an address, its length in bytes and its name.
+pub(super) type Array<'a> = (usize, usize, &'a str);
+
+/// What C passed as `pointer` and `length`.
+pub(super) fn array<T>(pointer: *const T, length: usize, name: &str) -> Array<'_> {
+    (pointer.addr(), length.saturating_mul(size_of::<T>()), name)
+}
+
+/// Refuses results that would be written over one of the arguments.
+pub(super) fn apart(results: Array, arguments: &[Array]) -> CallResult {
+    for argument in arguments {
+        let ((to, written, to_name), (from, read, from_name)) = (results, *argument);
+        if written > 0 && read > 0 && to < from.saturating_add(read) && from < to.saturating_add(written) {
+            return Err(CallError::Refused(format!("{to_name} and {from_name} overlap")));
+        }
+    }
+    Ok(())
 }
 
 /// A C string, `None` for null.

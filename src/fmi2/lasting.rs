@@ -3,16 +3,38 @@
 //! A host that loads and unloads an FMU thousands of times would otherwise lose the tables of
 //! each round: Rust drops no statics. They are freed by `atexit`, which on the common platforms runs
 //! when the shared library that called it goes. At the end of the process, where it runs too, a
-//! thread may still be in a call; so nothing is freed while an instance exists.
+//! thread may still be in a call; so nothing is freed while there is an instance, and no instance is
+//! made any more once the tables are gone.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
-/// Instances of this library that were not freed.
-static INSTANCES: AtomicUsize = AtomicUsize::new(0);
+/// Stays that have not ended, or [`GONE`].
+static STAYS: AtomicUsize = AtomicUsize::new(0);
+
+/// The tables were freed.
+const GONE: usize = usize::MAX;
 
 /// What frees the values.
 static OWNERS: Mutex<Vec<Box<dyn FnOnce() + Send>>> = Mutex::new(Vec::new());
+
+/// While there is one, nothing is freed: each instance has one.
+#[derive(Debug)]
+pub(super) struct Stay(());
+
+impl Stay {
+    /// A new one, `None` if it is too late.
+    pub fn begin() -> Option<Self> {
+        let begun = STAYS.fetch_update(Ordering::AcqRel, Ordering::Acquire, |stays| (stays != GONE).then(|| stays + 1));
+        begun.ok().map(|_| Self(()))
+    }
+}
+
+impl Drop for Stay {
+    fn drop(&mut self) {
+        STAYS.fetch_sub(1, Ordering::AcqRel);
+    }
+}
 
 /// A value made at its first use, that lasts until the library is unloaded.
 #[derive(Debug, Default)]
@@ -50,7 +72,7 @@ fn own(owner: Box<dyn FnOnce() + Send>) {
 }
 
 extern "C" fn free_all() {
-    if INSTANCES.load(Ordering::Acquire) > 0 {
+    if STAYS.compare_exchange(0, GONE, Ordering::AcqRel, Ordering::Acquire).is_err() {
         return;
     }
     let owners = std::mem::take(&mut *OWNERS.lock().unwrap_or_else(PoisonError::into_inner));
@@ -58,14 +80,4 @@ extern "C" fn free_all() {
     for owner in owners.into_iter().rev() {
         owner();
     }
-}
-
-/// Takes note that an instance was made.
-pub(super) fn instance_made() {
-    INSTANCES.fetch_add(1, Ordering::AcqRel);
-}
-
-/// Takes note that an instance was freed.
-pub(super) fn instance_freed() {
-    INSTANCES.fetch_sub(1, Ordering::AcqRel);
 }

@@ -1,8 +1,8 @@
 //! FMI 2.0 for any model: C types, call table, instance, panic boundary, export macro.
 //! Knows no robot; a model implements [`Model`], a shared library invokes [`crate::export_fmu!`].
 //!
-//! The way of a call: the exported function, [`api`] (one body a function), `boundary` (null
-//! check, panics), `instance` (call table, errors to status and log line), then the part of the
+//! The way of a call: the exported function, [`api`] (one body a function), `boundary` and `handle`
+//! (pointers, panics), `instance` (call table, errors to status and log line), then the part of the
 //! standard it belongs to: `lifecycle`, `variables`, `state`, `directional`, `model_exchange`,
 //! `co_simulation`.
 //!
@@ -18,6 +18,7 @@ mod co_simulation;
 mod directional;
 mod error;
 mod export;
+mod handle;
 mod input_derivatives;
 mod instance;
 mod lasting;

@@ -66,9 +66,10 @@ pub mod status_kind {
     pub const TERMINATED: c_int = 3;
 }
 
-/// The logger callback; variadic like `printf`.
+/// The logger callback; variadic like `printf`. It must not unwind; if it does all the same, that
+/// ends at the panic boundary and not in undefined behaviour.
 pub type LoggerCallback =
-    unsafe extern "C" fn(ComponentEnvironment, *const c_char, c_int, *const c_char, *const c_char, ...);
+    unsafe extern "C-unwind" fn(ComponentEnvironment, *const c_char, c_int, *const c_char, *const c_char, ...);
 
 /// `fmi2CallbackFunctions`. The memory functions and `stepFinished` are never called.
 #[derive(Debug, Clone, Copy)]

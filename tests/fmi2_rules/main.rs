@@ -5,6 +5,7 @@ mod call_order;
 mod co_simulation;
 mod directional;
 mod host;
+mod hostile;
 mod instances;
 mod lifecycle;
 mod logging;
