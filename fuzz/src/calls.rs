@@ -22,10 +22,7 @@ pub fn calls(data: &[u8]) -> u64 {
 
 fn run<M: Fmu>(u: &mut Unstructured, interface: Interface) -> u64 {
     let mut caller = Caller::<M> { host: Host::new(interface), saved: Vec::new() };
-    // quick ticks: what the swarm does has its own tests
-    if M::definition().variables.iter().any(|v| v.name == "control_mode") && u.ratio(7, 8).unwrap_or(true) {
-        caller.set_integer("control_mode", 2);
-    }
+    caller.host.quick_ticks(u);
     // most errors need an instance that runs
     if u.ratio(3, 4).unwrap_or(false) {
         caller.host.initialize(0.0);
@@ -48,12 +45,6 @@ struct Caller<M: Fmu> {
 const MOST_VARIABLES: usize = 4;
 
 impl<M: Fmu> Caller<M> {
-    fn set_integer(&mut self, name: &str, value: c_int) {
-        let variable = M::definition().variables.iter().find(|v| v.name == name).expect("a variable");
-        let status = call!(self.host, SetInteger, set_integer(&variable.value_reference, 1, &value));
-        assert_eq!(status, Status::Ok);
-    }
-
     /// Variables of a type, now and then of another, and what to use as their references.
     fn variables(u: &mut Unstructured, wanted: VariableType) -> Result<(Vec<&'static Variable>, Vec<u32>)> {
         let all = numbers::of_type(M::definition(), wanted);

@@ -3,6 +3,7 @@
 use std::ffi::{CString, c_char, c_int, c_void};
 use std::ptr;
 
+use arbitrary::Unstructured;
 use rps3::description::VariableType;
 use rps3::fmi2::api;
 use rps3::fmi2::call_table::{Function, Mode};
@@ -129,6 +130,17 @@ impl<M: Fmu> Host<M> {
             messages,
             silenced: false,
             model,
+        }
+    }
+
+    /// Mostly has a controller damp with fixed factors: what the swarm does has its own tests.
+    pub fn quick_ticks(&mut self, u: &mut Unstructured) {
+        let mode = M::definition().variables.iter().find(|variable| variable.name == "control_mode");
+        if let Some(variable) = mode
+            && u.ratio(7, 8).unwrap_or(true)
+        {
+            let (reference, drac) = (variable.value_reference, 2);
+            assert_eq!(call!(self, SetInteger, set_integer(&reference, 1, &drac)), Status::Ok);
         }
     }
 

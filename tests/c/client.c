@@ -3,13 +3,18 @@
  *   client LIBRARY GUID FIRST LAST run           one Co-Simulation and one Model Exchange run
  *   client LIBRARY GUID FIRST LAST cycles N      N times instantiate, run, free: no growth
  *   client LIBRARY GUID FIRST LAST loads N       N times load, instantiate, run, free, unload: no growth
+ *   client LIBRARY GUID FIRST LAST reload N      the same unmeasured, for tools with a heap of their own
  *   client LIBRARY GUID FIRST LAST threads N     N instances on N threads: the bits of serial runs
+ *   client LIBRARY GUID FIRST LAST later N       the same, after a first instance in the main thread: for
+ *                                                tools that do not see how the first one is made safely
+ *   client LIBRARY GUID FIRST LAST traps N       N steps with floating-point exceptions that trap
  *
  * FIRST to LAST are the value references of Real outputs. Ends with 0 if all is well, and says
  * what is wrong on stderr if not. Linux only, for /proc.
  */
 #define _GNU_SOURCE
 #include <dlfcn.h>
+#include <fenv.h>
 #include <malloc.h>
 #include <math.h>
 #include <pthread.h>
@@ -284,6 +289,7 @@ static void one_load(const Library *unused) {
 }
 
 #define THREAD_STEPS 30
+#define THREAD_STACK (128 * 1024)
 
 typedef struct {
     const Library *library;
@@ -300,10 +306,15 @@ static void *thread(void *argument) {
 static void threads(const Library *l, int n) {
     pthread_t *ids = calloc((size_t)n, sizeof *ids);
     Job *jobs = calloc((size_t)n, sizeof *jobs);
+    /* as small a stack as hosts are known to give */
+    pthread_attr_t attributes;
+    pthread_attr_init(&attributes);
+    if (pthread_attr_setstacksize(&attributes, THREAD_STACK)) fail("no such stack");
     for (int k = 0; k < n; k++) {
         jobs[k] = (Job){l, (unsigned)k % 16, 0};
-        if (pthread_create(&ids[k], NULL, thread, &jobs[k])) fail("no thread");
+        if (pthread_create(&ids[k], &attributes, thread, &jobs[k])) fail("no thread");
     }
+    pthread_attr_destroy(&attributes);
     for (int k = 0; k < n; k++) pthread_join(ids[k], NULL);
     for (int k = 0; k < n; k++) {
         if (jobs[k].hash != co_simulation(l, THREAD_STEPS, jobs[k].seed)) fail("thread %d has other bits", k);
@@ -313,7 +324,7 @@ static void threads(const Library *l, int n) {
 }
 
 int main(int argc, char **argv) {
-    if (argc < 6) fail("usage: client LIBRARY GUID FIRST LAST run|cycles|loads|threads [N]");
+    if (argc < 6) fail("usage: client LIBRARY GUID FIRST LAST run|cycles|loads|reload|threads|later|traps [N]");
     path = argv[1];
     guid = argv[2];
     for (unsigned vr = (unsigned)atoi(argv[3]); vr <= (unsigned)atoi(argv[4]); vr++) {
@@ -326,6 +337,10 @@ int main(int argc, char **argv) {
         without_growth(n, one_load, NULL);
         return 0;
     }
+    if (!strcmp(what, "reload")) {
+        for (int k = 0; k < n; k++) one_load(NULL);
+        return 0;
+    }
     Library l = load();
     if (!strcmp(what, "run")) {
         co_simulation(&l, n, 0);
@@ -335,6 +350,12 @@ int main(int argc, char **argv) {
         without_growth(n, one_cycle, &l);
     } else if (!strcmp(what, "threads")) {
         threads(&l, n);
+    } else if (!strcmp(what, "later")) {
+        one_cycle(&l);
+        threads(&l, n);
+    } else if (!strcmp(what, "traps")) {
+        feenableexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW);
+        co_simulation(&l, n, 0);
     } else {
         fail("what is %s?", what);
     }

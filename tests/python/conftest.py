@@ -20,6 +20,17 @@ IDENTIFIERS = ("Rps3Plant", "Rps3Controller")
 BROWSER_ARGUMENTS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"]
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """`--long` for tests with two sizes."""
+    parser.addoption("--long", action="store_true", help="the large counts, as `cargo xtask memory` runs them")
+
+
+@pytest.fixture(scope="session")
+def is_long(request: pytest.FixtureRequest) -> bool:
+    """Whether the large counts are wanted."""
+    return bool(request.config.getoption("--long"))
+
+
 @pytest.fixture(scope="session")
 def dist() -> Path:
     """Directory of the archives."""

@@ -7,7 +7,7 @@ use std::process::Command;
 use anyhow::{Result, bail};
 use clap::Args;
 
-use crate::{command, workspace};
+use crate::{command, library, workspace};
 
 /// The targets in `fuzz/fuzz_targets/`.
 const TARGETS: [&str; 3] = ["calls", "states", "parameters"];
@@ -65,7 +65,15 @@ pub fn run(options: &Options) -> Result<()> {
         fuzzer
             .arg(format!("-max_total_time={}", 60 * options.minutes))
             .arg(format!("-artifact_prefix={}/", artifacts.display()))
-            .args(["-max_len=2048", "-len_control=0", "-timeout=300", "-rss_limit_mb=4096", "-print_final_stats=1"])
+            // the harness measures each call's CPU time; this limit is for calls that never return
+            .args([
+                "-max_len=2048",
+                "-len_control=0",
+                "-timeout=3000",
+                "-report_slow_units=600",
+                "-rss_limit_mb=4096",
+                "-print_final_stats=1",
+            ])
             .env("RUST_BACKTRACE", "1");
         if command::run(&mut fuzzer).is_err() {
             broken.push(target);
@@ -79,7 +87,7 @@ pub fn run(options: &Options) -> Result<()> {
 
 /// The directory with the targets' binaries.
 fn build(directory: &Path, address_sanitizer: bool) -> Result<PathBuf> {
-    let host = host()?;
+    let host = library::host()?;
     let manifest = format!("--manifest-path={}", directory.join("Cargo.toml").display());
     // named, so that build scripts are compiled without the flags
     let mut cargo = command::cargo(&["build", "--release", "--target", &host, &manifest]);
@@ -91,13 +99,4 @@ fn build(directory: &Path, address_sanitizer: bool) -> Result<PathBuf> {
     cargo.env("CARGO_ENCODED_RUSTFLAGS", flags.join("\u{1f}"));
     command::run(&mut cargo)?;
     Ok(directory.join("target").join(host).join("release"))
-}
-
-/// The compiler's host triple.
-fn host() -> Result<String> {
-    let output = Command::new("rustc").args(["--print", "host-tuple"]).output()?;
-    if !output.status.success() {
-        bail!("rustc does not tell its host");
-    }
-    Ok(String::from_utf8(output.stdout)?.trim().to_owned())
 }

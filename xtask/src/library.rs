@@ -120,3 +120,13 @@ fn cargo_home() -> Option<PathBuf> {
     let named = std::env::var_os("CARGO_HOME").map(PathBuf::from);
     named.or_else(|| std::env::home_dir().map(|home| home.join(".cargo")))
 }
+
+/// The compiler's host triple.
+///
+/// # Errors
+/// When the compiler does not tell.
+pub fn host() -> Result<String> {
+    let output = Command::new("rustc").args(["--print", "host-tuple"]).output()?;
+    ensure!(output.status.success(), "rustc does not tell its host");
+    Ok(String::from_utf8(output.stdout)?.trim().to_owned())
+}

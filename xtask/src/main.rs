@@ -18,6 +18,7 @@ mod licenses;
 mod linked;
 mod lint;
 mod masters;
+mod memory;
 mod package;
 mod platform;
 mod python;
@@ -65,6 +66,8 @@ enum Task {
     Audit(audit::Options),
     /// Run the fuzz targets under libFuzzer
     Fuzz(fuzz::Options),
+    /// Look for leaks, growth and races in the shared libraries
+    Memory,
     /// Check format, lints, documentation and Python code
     Lint,
 }
@@ -83,6 +86,7 @@ fn main() -> ExitCode {
         Task::Bench(options) => bench::run(&options),
         Task::Audit(options) => audit::run(&options),
         Task::Fuzz(options) => fuzz::run(&options),
+        Task::Memory => memory::run(),
         Task::Lint => lint::run(),
     };
     match outcome {
