@@ -1,6 +1,8 @@
 //! One of the FMUs as a Co-Simulation slave over its C functions, by variable names.
 #![allow(dead_code)] // each test uses a part
 
+pub mod soak;
+
 use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::marker::PhantomData;
@@ -133,7 +135,7 @@ impl<M: Fmu> Slave<M> {
         Self { c, messages, model: PhantomData }
     }
 
-    fn reference(name: &str, variable_type: VariableType) -> ValueReference {
+    pub fn reference(name: &str, variable_type: VariableType) -> ValueReference {
         let variable = M::definition().variables.iter().find(|v| v.name == name).expect(name);
         assert_eq!(variable.variable_type(), variable_type);
         variable.value_reference
@@ -257,24 +259,41 @@ pub fn measure(plant: &Slave<Plant>, controller: &Slave<Controller>) {
     assert_eq!(controller.set_reals(&measured), Status::Ok);
 }
 
+/// Value references of what goes from the plant to the controller and back.
+pub struct Wires {
+    /// In the plant and in the controller.
+    measured: (Vec<ValueReference>, Vec<ValueReference>),
+    commands: (Vec<ValueReference>, Vec<ValueReference>),
+}
+
+impl Wires {
+    pub fn new() -> Self {
+        let references = |names: &[String]| -> (Vec<ValueReference>, Vec<ValueReference>) {
+            let both = |name: &String| {
+                let of_type = VariableType::Real;
+                (Slave::<Plant>::reference(name, of_type), Slave::<Controller>::reference(name, of_type))
+            };
+            names.iter().map(both).unzip()
+        };
+        let (measurements, voltages) = connections();
+        Self { measured: references(&measurements), commands: references(&voltages) }
+    }
+
+    /// Exchanges values and steps, controller first; whether all calls returned `fmi2OK`.
+    pub fn step(&self, plant: &Slave<Plant>, controller: &Slave<Controller>, point: f64, step: f64) -> bool {
+        let values = plant.get_references(&self.measured.0);
+        controller.set_references(&self.measured.1, &values) == Status::Ok
+            && controller.step(point, step) == Status::Ok
+            && plant.set_references(&self.commands.0, &controller.get_references(&self.commands.1)) == Status::Ok
+            && plant.step(point, step) == Status::Ok
+    }
+}
+
 /// The pair, controller first, from `from` to `to` (in steps of `step` s).
 pub fn couple(plant: &Slave<Plant>, controller: &Slave<Controller>, from: u32, to: u32, step: f64) {
-    let (measurements, voltages) = connections();
-    // value references in the plant and in the controller
-    let references = |names: &[String]| -> (Vec<ValueReference>, Vec<ValueReference>) {
-        let both = |name: &String| {
-            let of_type = VariableType::Real;
-            (Slave::<Plant>::reference(name, of_type), Slave::<Controller>::reference(name, of_type))
-        };
-        names.iter().map(both).unzip()
-    };
-    let (measured, commands) = (references(&measurements), references(&voltages));
+    let wires = Wires::new();
     for k in from..to {
-        let point = f64::from(k) * step;
-        let values = plant.get_references(&measured.0);
-        assert_eq!(controller.set_references(&measured.1, &values), Status::Ok);
-        assert_eq!(controller.step(point, step), Status::Ok, "{:?}", controller.take_messages());
-        assert_eq!(plant.set_references(&commands.0, &controller.get_references(&commands.1)), Status::Ok);
-        assert_eq!(plant.step(point, step), Status::Ok, "{:?}", plant.take_messages());
+        let good = wires.step(plant, controller, f64::from(k) * step, step);
+        assert!(good, "step {k}: {:?} {:?}", controller.take_messages(), plant.take_messages());
     }
 }

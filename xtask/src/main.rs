@@ -24,6 +24,7 @@ mod platform;
 mod python;
 mod sbom;
 mod setup;
+mod soak;
 mod ssp;
 mod targets;
 mod test;
@@ -68,6 +69,8 @@ enum Task {
     Fuzz(fuzz::Options),
     /// Look for leaks, growth and races in the shared libraries
     Memory,
+    /// Run both FMUs coupled for an hour and through a thousand crossings
+    Soak(soak::Options),
     /// Check format, lints, documentation and Python code
     Lint,
 }
@@ -87,6 +90,7 @@ fn main() -> ExitCode {
         Task::Audit(options) => audit::run(&options),
         Task::Fuzz(options) => fuzz::run(&options),
         Task::Memory => memory::run(),
+        Task::Soak(options) => soak::run(&options),
         Task::Lint => lint::run(),
     };
     match outcome {
