@@ -161,3 +161,53 @@ fn work_for_one_call_ends_with_a_discard_and_not_with_a_hang() {
     controller.initialize();
     assert_eq!(controller.step(0.0, 100.0), Status::Discard);
 }
+
+fn refuses_what_is_no_time<M: common::Fmu>() {
+    let slave = Slave::<M>::new();
+    for start in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e308, -1e308, 2e9] {
+        assert_eq!(slave.setup(start, None), Status::Error, "start time {start}");
+    }
+    for stop in [f64::NAN, f64::INFINITY, -1.0] {
+        assert_eq!(slave.setup(0.0, Some(stop)), Status::Error, "stop time {stop}");
+    }
+    for stop in [1e308, f64::MAX] {
+        assert_eq!(slave.setup(0.0, Some(stop)), Status::Ok, "far away is no harm");
+    }
+    slave.initialize();
+    for step in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e308, 1e9, 0.0, -1e-3] {
+        assert_eq!(slave.step(0.0, step), Status::Error, "step size {step}");
+    }
+    for point in [f64::NAN, f64::INFINITY, 1e308, -1.0] {
+        assert_eq!(slave.step(point, 1e-3), Status::Error, "communication point {point}");
+    }
+    // as short as doubles go
+    let shortest = slave.step(0.0, 5e-324);
+    assert!(matches!(shortest, Status::Ok | Status::Error), "{shortest:?}");
+    assert_eq!(slave.step(0.0, 1e-3), Status::Ok, "no refused step did harm");
+}
+
+#[test]
+fn a_time_or_step_that_is_none_is_an_error_at_once() {
+    refuses_what_is_no_time::<Plant>();
+    refuses_what_is_no_time::<Controller>();
+}
+
+fn runs_from<M: common::Fmu>(start: f64) {
+    let slave = Slave::<M>::new();
+    assert_eq!(slave.setup(start, None), Status::Ok);
+    slave.pass_initialization();
+    let mut time = start;
+    for _ in 0..20 {
+        assert_eq!(slave.step(time, 1e-3), Status::Ok, "at {time}: {:?}", slave.take_messages());
+        time += 1e-3;
+    }
+    assert_eq!(slave.real("time"), time);
+}
+
+#[test]
+fn the_earliest_and_the_latest_start_time_are_served() {
+    for start in [-1e9, -1.0, 1e6, 1e9 - 1.0] {
+        runs_from::<Plant>(start);
+        runs_from::<Controller>(start);
+    }
+}

@@ -203,15 +203,30 @@ impl<M: Fmu> Slave<M> {
         self.get_references(&references)
     }
 
-    /// Passes initialization; the outcome of its last call.
-    pub fn try_initialize(&self) -> Status {
-        assert_eq!(call!(self, setup_experiment(0, 0.0, 0.0, 0, 0.0)), Status::Ok);
+    pub fn setup(&self, start: f64, stop: Option<f64>) -> Status {
+        call!(self, setup_experiment(0, 0.0, start, c_int::from(stop.is_some()), stop.unwrap_or(0.0)))
+    }
+
+    /// Initialization Mode from end to end; the outcome of its last call.
+    fn initialization(&self) -> Status {
         assert_eq!(call!(self, enter_initialization_mode()), Status::Ok);
         call!(self, exit_initialization_mode())
     }
 
+    /// From 0 s on; the outcome of the last call.
+    pub fn try_initialize(&self) -> Status {
+        assert_eq!(self.setup(0.0, None), Status::Ok);
+        self.initialization()
+    }
+
+    /// After [`setup`](Self::setup).
+    pub fn pass_initialization(&self) {
+        assert_eq!(self.initialization(), Status::Ok, "{:?}", self.messages);
+    }
+
     pub fn initialize(&self) {
-        assert_eq!(self.try_initialize(), Status::Ok, "{:?}", self.messages);
+        assert_eq!(self.setup(0.0, None), Status::Ok);
+        self.pass_initialization();
     }
 
     pub fn step(&self, point: f64, size: f64) -> Status {
@@ -225,6 +240,23 @@ impl<M: Fmu> Slave<M> {
     pub fn state(&self) -> FmuState {
         let mut state = ptr::null_mut();
         assert_eq!(call!(self, get_fmu_state(&mut state)), Status::Ok);
+        state
+    }
+
+    /// The bytes of a state.
+    pub fn serialize(&self, state: FmuState) -> Vec<u8> {
+        let mut size = 0;
+        assert_eq!(call!(self, serialized_fmu_state_size(state, &mut size)), Status::Ok);
+        let mut bytes = vec![0; size];
+        assert_eq!(call!(self, serialize_fmu_state(state, bytes.as_mut_ptr(), size)), Status::Ok);
+        bytes
+    }
+
+    /// A state from bytes, null if they are refused.
+    pub fn deserialize(&self, bytes: &[u8]) -> FmuState {
+        let mut state = ptr::null_mut();
+        let status = call!(self, deserialize_fmu_state(bytes.as_ptr(), bytes.len(), &mut state));
+        assert_eq!(status == Status::Ok, !state.is_null());
         state
     }
 
