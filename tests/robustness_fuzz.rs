@@ -33,6 +33,7 @@ fn run<T>(target: &str, harness: impl Fn(&[u8]) -> T) {
             break;
         }
     }
+    println!("so far {}", harness::TALLY);
 }
 
 #[test]

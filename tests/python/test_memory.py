@@ -144,8 +144,9 @@ def test_fmpy_sees_no_growth(fmu: Fmu, is_long: bool) -> None:
         cycle()
     grown = process.memory_info().rss - before
     print(f"{count} cycles in FMPy: resident {grown:+} bytes")
-    # an instance takes some 10 kB; the interpreter's own heap varies by some pages
-    assert grown < 2**20
+    # an instance that stays takes more than 10 kB; the interpreter's own heap varies by some pages, and grew by
+    # 1.4 MB in 2000 cycles whose C counterpart leaves not a byte behind
+    assert grown < 2**20 + 2**10 * count
 
 
 def test_memcheck_finds_no_error_of_the_library_in_fmpy(fmu: Fmu, valgrind: str, tmp_path: Path, is_long: bool) -> None:
