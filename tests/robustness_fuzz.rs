@@ -12,7 +12,7 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// Inputs a target, and the time after which a slow machine may stop.
-const INPUTS: u64 = 100;
+const INPUTS: u64 = 300;
 const AT_MOST: Duration = Duration::from_secs(5);
 
 fn run<T>(target: &str, harness: impl Fn(&[u8]) -> T) {

@@ -39,7 +39,8 @@ pub struct Instance<M> {
     pub(super) layout: &'static Layout,
     pub(super) logger: Logger,
     pub(super) now: Snapshot<M>,
-    /// Model and values at the start of a communication step; kept to step without allocating.
+    /// Model and values before a communication step or a refresh during initialization, which may fail; kept to
+    /// step without allocating.
     pub(super) step_start: (M, Values),
     /// The states handed out, by the address that is their handle.
     pub(super) states: BTreeMap<usize, Box<Snapshot<M>>>,
@@ -123,11 +124,17 @@ impl<M: Model> Instance<M> {
         if let (Mode::Initialization, Some(experiment)) = (mode, experiment) {
             // what the parameters are worth is judged on leaving the mode: until then a host may
             // still be on its way to a consistent set
-            model
+            self.step_start.0.clone_from(model);
+            self.step_start.1.clone_from(values);
+            let outcome = model
                 .initialize(values, experiment, false, &mut self.logger)
                 .map_err(CallError::from)
-                .and_then(|()| self.check_finite())
-                .map_err(|error| CallError::Refused(error.to_string()))?;
+                .and_then(|()| self.check_finite());
+            if let Err(error) = outcome {
+                std::mem::swap(&mut self.now.model, &mut self.step_start.0);
+                std::mem::swap(&mut self.now.values, &mut self.step_start.1);
+                return Err(CallError::Refused(error.to_string()));
+            }
         } else {
             model.update(values, *time)?;
             self.check_finite()?;
