@@ -26,9 +26,7 @@ impl<M: Model> Instance<M> {
     /// `fmi2DoStep`: from the instance's own time to exactly `point + step`.
     pub(super) fn do_step(&mut self, point: f64, step: f64) -> CallResult {
         let (from, to) = self.check_step(point, step)?;
-        // `clone_from` reuses what is allocated
-        self.step_start.0.clone_from(&self.now.model);
-        self.step_start.1.clone_from(&self.now.values);
+        self.back_up();
         self.now.input_derivatives.begin_step(from);
         let Snapshot { model, values, input_derivatives, .. } = &mut self.now;
         let inputs = Inputs::new(self.layout, &self.step_start.1.reals, input_derivatives);
@@ -37,8 +35,7 @@ impl<M: Model> Instance<M> {
             .map_err(CallError::from)
             .and_then(|()| self.check_finite().map_err(CallError::without_discard));
         if let Err(error) = result {
-            std::mem::swap(&mut self.now.model, &mut self.step_start.0);
-            std::mem::swap(&mut self.now.values, &mut self.step_start.1);
+            self.roll_back();
             if let CallError::Discard(_) = error {
                 self.now.mode = Mode::StepFailed;
             }

@@ -62,13 +62,14 @@ impl<M: Model> Handle<M> {
     /// As for [`behind`](Self::behind), and `component` is not used any more.
     pub unsafe fn take_back(component: Component) -> Option<Box<Self>> {
         // SAFETY: passed on to the caller.
-        let _idle = unsafe { Self::behind(component) }?.lock()?;
+        let idle = unsafe { Self::behind(component) }?.lock()?;
         let handle: *mut Self = component.cast();
-        // SAFETY: it is a handle, from `Box::into_raw`, that nobody uses. The mark is gone before the
-        // memory is, so that a second try finds none if the memory still stands.
-        unsafe {
-            std::ptr::write_volatile(&raw mut (*handle).magic, 0);
-            Some(Box::from_raw(handle))
-        }
+        // SAFETY: it is a handle that no call is using. The mark is gone before the memory is, so that a
+        // second try finds none if the memory still stands.
+        unsafe { std::ptr::write_volatile(&raw mut (*handle).magic, 0) };
+        // the box must be the only way to its content
+        drop(idle);
+        // SAFETY: from `Box::into_raw`, and taken back once, as the mark tells.
+        Some(unsafe { Box::from_raw(handle) })
     }
 }

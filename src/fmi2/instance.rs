@@ -120,27 +120,38 @@ impl<M: Model> Instance<M> {
         {
             return Ok(());
         }
-        let Snapshot { model, values, time, mode, experiment, .. } = &mut self.now;
-        if let (Mode::Initialization, Some(experiment)) = (mode, experiment) {
+        if let (Mode::Initialization, Some(experiment)) = (self.now.mode, self.now.experiment) {
             // what the parameters are worth is judged on leaving the mode: until then a host may
             // still be on its way to a consistent set
-            self.step_start.0.clone_from(model);
-            self.step_start.1.clone_from(values);
+            self.back_up();
+            let Snapshot { model, values, .. } = &mut self.now;
             let outcome = model
-                .initialize(values, experiment, false, &mut self.logger)
+                .initialize(values, &experiment, false, &mut self.logger)
                 .map_err(CallError::from)
                 .and_then(|()| self.check_finite());
             if let Err(error) = outcome {
-                std::mem::swap(&mut self.now.model, &mut self.step_start.0);
-                std::mem::swap(&mut self.now.values, &mut self.step_start.1);
+                self.roll_back();
                 return Err(CallError::Refused(error.to_string()));
             }
         } else {
+            let Snapshot { model, values, time, .. } = &mut self.now;
             model.update(values, *time)?;
             self.check_finite()?;
         }
         self.now.stale = false;
         Ok(())
+    }
+
+    /// Keeps model and values for [`roll_back`](Self::roll_back), reusing what is allocated.
+    pub(super) fn back_up(&mut self) {
+        self.step_start.0.clone_from(&self.now.model);
+        self.step_start.1.clone_from(&self.now.values);
+    }
+
+    /// Undoes what happened to model and values since [`back_up`](Self::back_up).
+    pub(super) fn roll_back(&mut self) {
+        std::mem::swap(&mut self.now.model, &mut self.step_start.0);
+        std::mem::swap(&mut self.now.values, &mut self.step_start.1);
     }
 
     /// No call succeeds with a value that is not finite.
