@@ -169,8 +169,18 @@ impl<'a> Fitness<'a> {
     /// The fitness of `damping`, m2; smaller is better.
     #[inline]
     pub fn evaluate(&self, damping: &Damping<f64>) -> f64 {
-        let rho_hd = damping.rho_hd(self.basis.sigma_min, self.sample_time);
-        self.of_acceleration(&self.basis.coordinate_acceleration(damping.rho, rho_hd), damping.lambda_f)
+        self.of_factors(damping.rho, self.rho_hd(damping), damping.lambda_f)
+    }
+
+    /// rho_hd (4.16) of `damping`, 1/s.
+    pub fn rho_hd(&self, damping: &Damping<f64>) -> f64 {
+        damping.rho_hd(self.basis.sigma_min, self.sample_time)
+    }
+
+    /// [`evaluate`](Self::evaluate) for rho_hd (1/s) in place of delta_hd.
+    #[inline]
+    pub fn of_factors(&self, rho: f64, rho_hd: f64, lambda_f: f64) -> f64 {
+        self.of_acceleration(&self.basis.coordinate_acceleration(rho, rho_hd), lambda_f)
     }
 
     /// The fitness of asking for s_ddot = `wanted`, (m, rad, rad)/s2, in whatever way it was found.

@@ -67,8 +67,10 @@ impl Search {
         let known = STARTS.min(settings.swarm_size * 2 / 3);
         let starts = elite.starts(rng);
         let mut least = [f64::INFINITY; QUARTERS];
+        let largest_rho_hd = fitness.rho_hd(largest);
         let mut value = |z: &[f64; 3]| {
-            let value = fitness.evaluate(&damping(z, largest, sigma_min));
+            let Shares { rho, rho_hd, lambda_f } = Shares::of(z);
+            let value = fitness.of_factors(largest.rho * rho, largest_rho_hd * rho_hd, largest.lambda_f * lambda_f);
             let quarter = Elite::quarter(z);
             if value < least[quarter] {
                 (least[quarter], elite.particles[quarter]) = (value, *z);
@@ -120,23 +122,32 @@ impl Default for Elite {
     }
 }
 
-/// The damping of a particle with members in [0, 1].
+/// What a particle with members in [0, 1] takes of the largest factors.
 ///
 /// rho and lambda_f act over decades, three and six of them: as powers of a member they have room where they
-/// are small, and zero is within reach. delta_hd acts only by rho_hd, and not at all below
-/// sigma_min; its member is the fourth root of rho_hd's share in the largest possible.
+/// are small, and zero is within reach. delta_hd acts only by rho_hd, and not at all below sigma_min.
+struct Shares {
+    rho: f64,
+    rho_hd: f64,
+    lambda_f: f64,
+}
+
+impl Shares {
+    fn of(z: &[f64; 3]) -> Self {
+        let square = z.map(|z| z * z);
+        Self { rho: square[0] * z[0], rho_hd: square[1] * square[1], lambda_f: square[2] * square[2] * square[2] }
+    }
+}
+
+/// The damping of a particle. Where no delta_hd takes effect it is the share of the largest.
 fn damping(z: &[f64; 3], largest: &Damping<f64>, sigma_min: f64) -> Damping<f64> {
-    let square = z.map(|z| z * z);
-    let share = square[1] * square[1];
+    let Shares { rho, rho_hd, lambda_f } = Shares::of(z);
     let sigma = sigma_min.max(SMALLEST_SIGMA);
     let delta_hd = if sigma < largest.delta_hd {
-        (sigma / (1.0 - share * (1.0 - sigma / largest.delta_hd))).min(largest.delta_hd)
+        // (4.16) for delta_hd
+        (sigma / (1.0 - rho_hd * (1.0 - sigma / largest.delta_hd))).min(largest.delta_hd)
     } else {
-        largest.delta_hd * share
+        largest.delta_hd * rho_hd
     };
-    Damping {
-        rho: largest.rho * square[0] * z[0],
-        delta_hd,
-        lambda_f: largest.lambda_f * square[2] * square[2] * square[2],
-    }
+    Damping { rho: largest.rho * rho, delta_hd, lambda_f: largest.lambda_f * lambda_f }
 }

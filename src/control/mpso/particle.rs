@@ -8,6 +8,8 @@ use super::{Bounds, Settings};
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Particle<const D: usize> {
     pub position: [f64; D],
+    /// Of the present position.
+    pub error: f64,
     velocity: [f64; D],
     best_position: [f64; D],
     best_error: f64,
@@ -68,6 +70,7 @@ impl<const D: usize> Particle<D> {
 
     /// Takes note of the error at the present position: pbest of (3.1).
     pub fn remember(&mut self, error: f64) {
+        self.error = error;
         if error < self.best_error {
             self.best_error = error;
             self.best_position = self.position;
@@ -77,7 +80,13 @@ impl<const D: usize> Particle<D> {
 
 impl<const D: usize> Default for Particle<D> {
     fn default() -> Self {
-        Self { position: [0.0; D], velocity: [0.0; D], best_position: [0.0; D], best_error: f64::INFINITY }
+        Self {
+            position: [0.0; D],
+            error: f64::INFINITY,
+            velocity: [0.0; D],
+            best_position: [0.0; D],
+            best_error: f64::INFINITY,
+        }
     }
 }
 

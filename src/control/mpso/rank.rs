@@ -3,8 +3,9 @@
 //! A rank is 1 + the number of individuals that are better, so equals share a rank. Up to
 //! [`COUNTING_MAX`] individuals it is found by just counting them: all pairs are compared without
 //! a branch, several a cycle, which beats sorting. Larger populations are sorted.
-
-use std::ops::AddAssign;
+//!
+//! Keys are single precision, which makes counting twice as fast: individuals that differ by less than
+//! 1e-7 of their distance from the best, in value or in place, are equals.
 
 /// Keys compared at once; buffers are padded to a multiple of it.
 const LANES: usize = 8;
@@ -15,13 +16,13 @@ const COUNTING_MAX: usize = 160;
 #[derive(Debug, Clone)]
 pub(super) struct Ranking {
     n: usize,
-    errors: Vec<f64>,
-    /// Minus the squared distance: the smaller the better, as with errors. Single precision
-    /// suffices to order distances and makes counting twice as fast.
+    /// By how much the error exceeds the best one.
+    excesses: Vec<f32>,
+    /// Minus the squared distance: the smaller the better, as with errors.
     nearness: Vec<f32>,
-    /// F_k. A rounding error below 1e-7 of it decides between no two individuals that matter.
+    /// F_k.
     scores: Vec<f32>,
-    error_ranks: Vec<u64>,
+    error_ranks: Vec<u32>,
     distance_ranks: Vec<u32>,
     score_ranks: Vec<u32>,
     /// How many individuals of a rank have been placed.
@@ -35,7 +36,7 @@ impl Ranking {
         Self {
             n,
             // The padding is better than nobody.
-            errors: vec![f64::INFINITY; padded],
+            excesses: vec![f32::INFINITY; padded],
             nearness: vec![f32::INFINITY; padded],
             scores: vec![f32::INFINITY; padded],
             error_ranks: vec![1; padded],
@@ -46,9 +47,9 @@ impl Ranking {
         }
     }
 
-    /// Sets the error of individual `k`; never NaN.
-    pub fn set_error(&mut self, k: usize, error: f64) {
-        self.errors[k] = error;
+    /// Sets by how much the error of individual `k` exceeds the best one; never NaN.
+    pub fn set_excess(&mut self, k: usize, excess: f64) {
+        self.excesses[k] = excess as f32;
     }
 
     /// Sets D_k (3.4), squared, since only its rank matters; never NaN.
@@ -60,10 +61,10 @@ impl Ranking {
     /// those of equal score by index.
     pub fn by_score(&mut self, s: f64) -> &mut [usize] {
         let n = self.n;
-        rank(&self.errors, n, &mut self.error_ranks, &mut self.order);
+        rank(&self.excesses, n, &mut self.error_ranks, &mut self.order);
         rank(&self.nearness, n, &mut self.distance_ranks, &mut self.order);
         for (k, score) in self.scores[..n].iter_mut().enumerate() {
-            *score = (f64::from(self.error_ranks[k] as u32) + s * f64::from(self.distance_ranks[k])) as f32; // (3.3)
+            *score = (f64::from(self.error_ranks[k]) + s * f64::from(self.distance_ranks[k])) as f32; // (3.3)
         }
         rank(&self.scores, n, &mut self.score_ranks, &mut self.order);
         self.placed.fill(0);
@@ -77,12 +78,7 @@ impl Ranking {
 }
 
 /// Ranks the first `n` of `keys`, smallest first; `order` is scratch space.
-fn rank<K: PartialOrd + Copy, C: From<bool> + AddAssign + Copy>(
-    keys: &[K],
-    n: usize,
-    ranks: &mut [C],
-    order: &mut [usize],
-) {
+fn rank(keys: &[f32], n: usize, ranks: &mut [u32], order: &mut [usize]) {
     if n <= COUNTING_MAX {
         rank_by_counting(keys, ranks);
     } else {
@@ -90,33 +86,27 @@ fn rank<K: PartialOrd + Copy, C: From<bool> + AddAssign + Copy>(
     }
 }
 
-/// `C` is as wide as `K`, so that vector registers hold as many of the one as of the other.
-fn rank_by_counting<K: PartialOrd + Copy, C: From<bool> + AddAssign + Copy>(keys: &[K], ranks: &mut [C]) {
+fn rank_by_counting(keys: &[f32], ranks: &mut [u32]) {
     let (blocks, _) = keys.as_chunks::<LANES>();
     let (rank_blocks, _) = ranks.as_chunks_mut::<LANES>();
     for (block, rank_block) in blocks.iter().zip(rank_blocks) {
-        let mut ranks = [C::from(true); LANES];
+        let mut ranks = [1; LANES];
         for &other in keys {
             for (rank, &key) in ranks.iter_mut().zip(block) {
-                *rank += C::from(other < key);
+                *rank += u32::from(other < key);
             }
         }
         *rank_block = ranks;
     }
 }
 
-fn rank_by_sorting<K: PartialOrd + Copy, C: From<bool> + AddAssign + Copy>(
-    keys: &[K],
-    ranks: &mut [C],
-    order: &mut [usize],
-) {
+fn rank_by_sorting(keys: &[f32], ranks: &mut [u32], order: &mut [usize]) {
     for (k, index) in order.iter_mut().enumerate() {
         *index = k;
     }
-    order.sort_unstable_by(|&a, &b| keys[a].partial_cmp(&keys[b]).expect("keys are never NaN"));
-    let (mut place, mut rank, mut previous) = (C::from(false), C::from(true), keys[order[0]]);
-    for &index in order.iter() {
-        place += C::from(true);
+    order.sort_unstable_by(|&a, &b| keys[a].total_cmp(&keys[b]));
+    let (mut rank, mut previous) = (1, keys[order[0]]);
+    for (place, &index) in (1..).zip(order.iter()) {
         if previous < keys[index] {
             (rank, previous) = (place, keys[index]);
         }
@@ -132,8 +122,8 @@ mod tests {
     use super::*;
 
     /// 1 + the number of individuals that are better.
-    fn by_definition(keys: &[f64]) -> Vec<u64> {
-        keys.iter().map(|key| 1 + keys.iter().filter(|other| *other < key).count() as u64).collect()
+    fn by_definition(keys: &[f32]) -> Vec<u32> {
+        keys.iter().map(|key| 1 + keys.iter().filter(|other| *other < key).count() as u32).collect()
     }
 
     #[test]
@@ -141,12 +131,12 @@ mod tests {
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(5);
         for n in [2_usize, 7, 8, 40, 41, 200] {
             // Few distinct values: many equals, among them infinity.
-            let mut keys: Vec<f64> = (0..n).map(|_| 1.0 / (rng.next_u64() % 16) as f64).collect();
+            let mut keys: Vec<f32> = (0..n).map(|_| 1.0 / (rng.next_u64() % 16) as f32).collect();
             let expected = by_definition(&keys);
             let (mut ranks, mut order) = (vec![0; n.next_multiple_of(LANES)], vec![0; n]);
             rank_by_sorting(&keys, &mut ranks, &mut order);
             assert_eq!(ranks[..n], expected);
-            keys.resize(n.next_multiple_of(LANES), f64::INFINITY);
+            keys.resize(n.next_multiple_of(LANES), f32::INFINITY);
             rank_by_counting(&keys, &mut ranks);
             assert_eq!(ranks[..n], expected);
         }
@@ -159,7 +149,7 @@ mod tests {
         for (k, (error, squared_distance)) in
             [(0.1, 0.0), (0.2, 0.5), (0.3, 9.0), (f64::INFINITY, 4.0)].into_iter().enumerate()
         {
-            ranking.set_error(k, error);
+            ranking.set_excess(k, error - 0.1);
             ranking.set_squared_distance(k, squared_distance);
         }
         // s = 0.7: F = 1 + 2.8, 2 + 2.1, 3 + 0.7, 4 + 1.4 = 3.8, 4.1, 3.7, 5.4

@@ -157,19 +157,20 @@ impl<const D: usize> Swarm<D> {
         improved
     }
 
-    /// Evaluates an individual and notes its error wherever it is needed.
+    /// Evaluates an individual, which takes note of its error.
     fn evaluate(&mut self, index: usize, objective: &mut impl FnMut(&[f64; D]) -> f64) -> f64 {
         let particle = &mut self.particles[index];
         let value = objective(&particle.position);
         let error = if value.is_finite() { value } else { f64::INFINITY };
         particle.remember(error);
-        self.ranking.set_error(index, error);
         error
     }
 
     /// Lets the PS individuals with the smallest scores (3.3) survive, and the best in any case.
     fn select(&mut self, best: &Best<D>, s: f64) {
         for (k, particle) in self.particles.iter().enumerate() {
+            // All are equal as long as the best is infinite too, for NaN.max(0) is 0.
+            self.ranking.set_excess(k, (particle.error - best.error).max(0.0));
             let mut squared = 0.0; // (3.4)
             for g in 0..D {
                 let difference = self.scale[g] * (particle.position[g] - best.position[g]);
