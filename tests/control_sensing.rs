@@ -5,13 +5,13 @@ use proptest::prelude::*;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use rps3::control::{Estimator, Measurement, SensorParameters, Sensors};
+use rps3::control::{Deviations, Estimator, Measurement, SensorParameters, Sensors};
 use rps3::coupling::measure;
 use rps3::defaults as d;
 use rps3::dynamics::{Inputs, PlantModel, PlantParameters, PlantState};
 use rps3::mechanism::{Limb, Pose};
 
-const DEVIATIONS: (f64, f64) = (1.5e-4, 0.2 * d::DEG);
+const DEVIATIONS: Deviations = Deviations { length: 1.5e-4, angle: 0.2 * d::DEG, length_bias: 1e-9 };
 
 fn model() -> PlantModel<f64> {
     PlantModel::new(&PlantParameters::default())
@@ -34,7 +34,7 @@ proptest! {
     ) {
         let s = [heave, tilt[0], tilt[1]];
         // first guess a crossing away
-        let mut estimator = Estimator::new(DEVIATIONS, 0.0, 1e-3, VIA);
+        let mut estimator = Estimator::new(&DEVIATIONS, 0.0, 1e-3, VIA);
         let model = model();
         let estimate = estimator.update(&model.geometry, &exact(&model, s, rates));
         prop_assert!((estimate.s - Vector3::from(s)).amax() < 1e-13);
@@ -46,7 +46,7 @@ proptest! {
 fn estimate_is_unbiased_and_as_precise_as_least_squares_can_be() {
     let model = model();
     let truth = exact(&model, VIA, [0.0; 3]);
-    let estimator = Estimator::new(DEVIATIONS, 0.0, 1e-3, VIA);
+    let estimator = Estimator::new(&DEVIATIONS, 0.0, 1e-3, VIA);
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(1);
     let mut gauss = |deviation: f64| {
         let z: f64 = StandardNormal.sample(&mut rng);
@@ -55,7 +55,7 @@ fn estimate_is_unbiased_and_as_precise_as_least_squares_can_be() {
     // At a direct singularity on purpose: lengths alone would leave one direction open.
     let mut information = Matrix3::zeros();
     for limb in Limb::all(&model.geometry, &Pose::new(&model.geometry, &VIA.into())) {
-        let (length, angle) = (limb.length_gradient / DEVIATIONS.0, limb.angle_gradient / DEVIATIONS.1);
+        let (length, angle) = (limb.length_gradient / DEVIATIONS.length, limb.angle_gradient / DEVIATIONS.angle);
         information += length * length.transpose() + angle * angle.transpose();
     }
     let covariance = information.try_inverse().expect("six sensors see every motion");
@@ -64,8 +64,8 @@ fn estimate_is_unbiased_and_as_precise_as_least_squares_can_be() {
     for _ in 0..n as usize {
         let mut noisy = truth;
         for i in 0..3 {
-            noisy.lengths[i] += gauss(DEVIATIONS.0);
-            noisy.angles[i] += gauss(DEVIATIONS.1);
+            noisy.lengths[i] += gauss(DEVIATIONS.length);
+            noisy.angles[i] += gauss(DEVIATIONS.angle);
         }
         let error = estimator.fit(&model.geometry, &noisy, &VIA.into(), false).s - Vector3::from(VIA);
         sum += error;
@@ -85,7 +85,7 @@ fn filter_averages_noise_and_does_not_lag() {
     let (model, sample_time, filter_time) = (model(), 1e-3, 0.05);
     // A steady motion through the singular pose: exact readings come through without lag.
     let rates = [-0.05, 0.1, 0.08];
-    let mut estimator = Estimator::new(DEVIATIONS, filter_time, sample_time, VIA);
+    let mut estimator = Estimator::new(&DEVIATIONS, filter_time, sample_time, VIA);
     for k in 0..400 {
         let t = sample_time * f64::from(k) - 0.2;
         let s = [0, 1, 2].map(|i| VIA[i] + rates[i] * t);
@@ -96,24 +96,74 @@ fn filter_averages_noise_and_does_not_lag() {
     let truth = exact(&model, VIA, [0.0; 3]);
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(2);
     let (mut fitted, mut filtered) = (0.0, 0.0);
-    let mut estimator = Estimator::new(DEVIATIONS, filter_time, sample_time, VIA);
+    let fresh = Estimator::new(&DEVIATIONS, 0.0, sample_time, VIA);
+    let mut estimator = Estimator::new(&DEVIATIONS, filter_time, sample_time, VIA);
     let n = 200_000;
     for k in 0..n {
         let mut noisy = truth;
         for i in 0..3 {
             let z: f64 = StandardNormal.sample(&mut rng);
-            noisy.lengths[i] += DEVIATIONS.0 * z;
+            noisy.lengths[i] += DEVIATIONS.length * z;
         }
         let estimate = estimator.update(&model.geometry, &noisy);
         if k > 1000 {
             filtered += (estimate.s.x - VIA[0]).powi(2);
-            fitted += (estimator.fit(&model.geometry, &noisy, &VIA.into(), false).s.x - VIA[0]).powi(2);
+            fitted += (fresh.fit(&model.geometry, &noisy, &VIA.into(), false).s.x - VIA[0]).powi(2);
         }
     }
     let gain = 1.0 - (-sample_time / filter_time).exp();
     let expected = gain / (2.0 - gain);
     // about n / 100 independent values: relative deviation of the variance sqrt(2 / 2000) = 3 %
     assert!((filtered / fitted / expected - 1.0).abs() < 0.12, "{} {expected}", filtered / fitted);
+}
+
+#[test]
+fn static_errors_of_lengths_are_found_as_well_as_angles_tell_them() {
+    // At rest a batch of n readings is as good as one of their mean, in which a length is uncertain by its noise and its
+    // static error together: the estimate's covariance is known.
+    let model = model();
+    let truth = exact(&model, VIA, [0.0; 3]);
+    let deviations = Deviations { length_bias: 2e-3, ..DEVIATIONS };
+    let (readings, runs) = (100, 2000);
+    let n = f64::from(readings);
+    let length_variance = deviations.length.powi(2) / n + deviations.length_bias.powi(2);
+    let angle_variance = deviations.angle.powi(2) / n;
+    let mut information = Matrix3::zeros();
+    for limb in Limb::all(&model.geometry, &Pose::new(&model.geometry, &VIA.into())) {
+        information += limb.length_gradient * limb.length_gradient.transpose() / length_variance
+            + limb.angle_gradient * limb.angle_gradient.transpose() / angle_variance;
+    }
+    let covariance = information.try_inverse().expect("angles see every motion");
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(3);
+    let mut gauss = |deviation: f64| {
+        let z: f64 = StandardNormal.sample(&mut rng);
+        deviation * z
+    };
+    let (mut squares, mut normalized) = (Vector3::zeros(), 0.0);
+    for _ in 0..runs {
+        let biases = [(); 3].map(|()| gauss(deviations.length_bias));
+        // a filter so slow that no reading fades
+        let mut estimator = Estimator::new(&deviations, 1e9, 1e-3, VIA);
+        let mut error = Vector3::zeros();
+        for _ in 0..readings {
+            let mut noisy = truth;
+            for i in 0..3 {
+                noisy.lengths[i] += biases[i] + gauss(deviations.length);
+                noisy.angles[i] += gauss(deviations.angle);
+            }
+            error = estimator.update(&model.geometry, &noisy).s - Vector3::from(VIA);
+        }
+        squares += error.component_mul(&error) / f64::from(runs);
+        normalized += error.dot(&(information * error)) / f64::from(runs);
+    }
+    // 4 relative standard deviations of a variance, and of a mean of chi-squares of 3 degrees of freedom, beside
+    // curvature, which the formula does not know
+    let bound = 4.0 * (2.0 / f64::from(runs)).sqrt();
+    for i in 0..3 {
+        let ratio = squares[i] / covariance[(i, i)];
+        assert!((ratio - 1.0).abs() < bound, "{i}: {ratio}");
+    }
+    assert!((normalized / 3.0 - 1.0).abs() < bound / 3.0_f64.sqrt(), "{normalized}");
 }
 
 #[test]
@@ -139,7 +189,7 @@ fn sensors_have_the_resolution_the_repeatability_and_the_static_error_of_table_1
             angle_sum += angle_error / n;
             angle_square += angle_error * angle_error / n;
         }
-        let (length_deviation, angle_deviation) = parameters.deviations();
+        let Deviations { length: length_deviation, angle: angle_deviation, .. } = parameters.deviations();
         // relative deviation of a standard deviation: 1 / sqrt(2 n) = 2.2 %, here within 4.5 of them
         assert!(((square - sum * sum).sqrt() / length_deviation - 1.0).abs() < 0.1);
         assert!(((angle_square - angle_sum * angle_sum).sqrt() / angle_deviation - 1.0).abs() < 0.1);

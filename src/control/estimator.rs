@@ -2,6 +2,11 @@
 //!
 //! Lengths alone do not tell the pose at a direct singularity; lengths and angles together do
 //! everywhere. So the pose is a weighted least-squares fit of all six, and its rate likewise.
+//!
+//! Lengths may be off by a static error each, which angles do not have. It is estimated along with the pose: the fits
+//! of all ticks are one least-squares problem in the present pose and three constants, of which a tick keeps the
+//! information matrix. What it says of the pose fades with the filter's time constant, for rates carry a pose on only so
+//! long; what it says of the constants stays.
 
 use std::cmp::Ordering;
 
@@ -22,20 +27,45 @@ pub struct Estimate<T> {
     pub s_dot: Vector3<T>,
 }
 
-/// Least squares, then a filter that trusts the measured rates over short times.
+/// Standard deviations of what the sensors tell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Deviations {
+    /// Of a length about its static error, m.
+    pub length: f64,
+    /// Of an angle, rad.
+    pub angle: f64,
+    /// Of the static errors of lengths, m; above 0.
+    pub length_bias: f64,
+}
+
+/// Recursive least squares over poses and the static errors of lengths.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Estimator {
-    /// Weights of a length (1/m) and of an angle (1/rad): inverse standard deviations.
-    length_weight: f64,
-    angle_weight: f64,
-    /// Steady share of the fitted pose in the filtered one at a tick; 1: no filter.
-    gain: f64,
+    /// Information of a length, 1/m2, and of an angle, 1/rad2: inverse variances.
+    length_information: f64,
+    angle_information: f64,
+    /// What a tick keeps of the information on the pose; 0: no filter.
+    retention: f64,
     sample_time: f64,
-    /// Ticks since the start.
-    ticks: u32,
     /// Last estimate: coordinates and rates.
     s: [f64; 3],
     s_dot: [f64; 3],
+    /// Static errors of the lengths, m.
+    biases: [f64; 3],
+    /// Information on (pose, static errors): its blocks pose-pose, pose-errors and the diagonal errors-errors.
+    pose_information: [[f64; 3]; 3],
+    shared_information: [[f64; 3]; 3],
+    bias_information: [f64; 3],
+}
+
+/// A least-squares fit and the information that it rests on.
+#[derive(Debug, Clone, Copy)]
+struct Fit<T> {
+    estimate: Estimate<T>,
+    biases: Vector3<T>,
+    pose_information: Matrix3<T>,
+    shared_information: Matrix3<T>,
+    bias_information: Vector3<T>,
 }
 
 /// Newton's iterations at a tick. From the last tick's pose two reach rounding, from the first
@@ -47,42 +77,39 @@ impl Estimator {
     /// As a controller with `parameters` uses it, before its first tick.
     pub fn of(parameters: &ControllerParameters) -> Self {
         let ControllerParameters { sensors, filter_time, sample_time, waypoints, .. } = parameters;
-        Self::new(sensors.deviations(), *filter_time, *sample_time, waypoints[0])
+        Self::new(&sensors.deviations(), *filter_time, *sample_time, waypoints[0])
     }
 
-    /// `deviations` of length (m) and angle (rad) readings; the filter's time constant
-    /// `filter_time` (s), 0 for none; first guess `s` (m, rad, rad).
-    pub fn new(deviations: (f64, f64), filter_time: f64, sample_time: f64, s: [f64; 3]) -> Self {
-        let gain = if filter_time > 0.0 { 1.0 - libm::exp(-sample_time / filter_time) } else { 1.0 };
+    /// For sensors with `deviations`; the filter's time constant `filter_time` (s), 0 for none; first guess `s` (m, rad, rad).
+    pub fn new(deviations: &Deviations, filter_time: f64, sample_time: f64, s: [f64; 3]) -> Self {
+        let information = |deviation: f64| (deviation * deviation).recip();
         Self {
-            length_weight: deviations.0.recip(),
-            angle_weight: deviations.1.recip(),
-            gain,
+            length_information: information(deviations.length),
+            angle_information: information(deviations.angle),
+            retention: if filter_time > 0.0 { libm::exp(-sample_time / filter_time) } else { 0.0 },
             sample_time,
-            ticks: 0,
             s,
             s_dot: [0.0; 3],
+            biases: [0.0; 3],
+            pose_information: [[0.0; 3]; 3],
+            shared_information: [[0.0; 3]; 3],
+            bias_information: [information(deviations.length_bias); 3],
         }
     }
 
     /// The estimate at a tick; remembers it.
     pub fn update(&mut self, geometry: &Geometry<f64>, measured: &Measurement<f64>) -> Estimate<f64> {
-        let last = Estimate { s: self.s.into(), s_dot: self.s_dot.into() };
-        let fit = self.fit(geometry, measured, &last.s, false);
-        let mut s = fit.s;
-        if self.gain < 1.0 && self.ticks > 0 {
-            let predicted = last.s + (last.s_dot + fit.s_dot) * (0.5 * self.sample_time);
-            // the mean of all fits so far, until the steady gain is reached
-            let gain = self.gain.max(1.0 / (f64::from(self.ticks) + 1.0));
-            s = predicted + (fit.s - predicted) * gain;
-        }
-        self.ticks = self.ticks.saturating_add(1);
-        self.s = s.into();
-        self.s_dot = fit.s_dot.into();
-        Estimate { s, s_dot: fit.s_dot }
+        let fit = self.fit_all(geometry, measured, &self.s.into(), false);
+        self.s = fit.estimate.s.into();
+        self.s_dot = fit.estimate.s_dot.into();
+        self.biases = fit.biases.into();
+        self.pose_information = fit.pose_information.into();
+        self.shared_information = fit.shared_information.into();
+        self.bias_information = fit.bias_information.into();
+        fit.estimate
     }
 
-    /// Weighted least-squares fit of pose (Gauss-Newton from `guess`) and rates. `exact` makes all
+    /// What [`update`](Self::update) would estimate, searched from `guess` and in any number type. `exact` makes all
     /// iterations, as derivatives carried by `T` want: they converge after the value.
     pub fn fit<T: Scalar>(
         &self,
@@ -91,51 +118,65 @@ impl Estimator {
         guess: &Vector3<T>,
         exact: bool,
     ) -> Estimate<T> {
-        let (length_weight, angle_weight) = (constant(self.length_weight), constant::<T>(self.angle_weight));
-        let mut s = *guess;
-        let mut limbs = Limb::all(geometry, &Pose::new(geometry, &s));
-        let mut normal = normal_matrix(&limbs, length_weight, angle_weight);
-        for _ in 0..ITERATIONS {
-            let residual = projected(&limbs, length_weight, angle_weight, |i, limb| {
-                (measured.lengths[i] - limb.length, measured.angles[i] - limb.angle())
-            });
-            let step = solve_positive_definite(&normal, &residual);
+        self.fit_all(geometry, measured, guess, exact).estimate
+    }
+
+    /// Gauss-Newton over the pose and the static errors, which are eliminated from each step.
+    fn fit_all<T: Scalar>(
+        &self,
+        geometry: &Geometry<T>,
+        measured: &Measurement<T>,
+        guess: &Vector3<T>,
+        exact: bool,
+    ) -> Fit<T> {
+        let [length_information, angle_information] =
+            [self.length_information, self.angle_information].map(constant::<T>);
+        let half_sample = constant::<T>(0.5 * self.sample_time);
+        let [last, last_rate, last_biases, known_bias] =
+            [self.s, self.s_dot, self.biases, self.bias_information].map(|v| Vector3::from(v).map(constant::<T>));
+        let known_pose = Matrix3::from(self.pose_information).map(|i| constant::<T>(i * self.retention));
+        let retained = self.retention.sqrt();
+        let known_shared = Matrix3::from(self.shared_information).map(|i| constant::<T>(i * retained));
+        let bias_information = known_bias.add_scalar(length_information);
+        let bias_variance = bias_information.map(T::recip);
+
+        let (mut s, mut biases, mut iteration) = (*guess, last_biases, 0);
+        loop {
+            let limbs = Limb::all(geometry, &Pose::new(geometry, &s));
+            let length_gradients = Matrix3::from_columns(&limbs.map(|limb| limb.length_gradient));
+            let angle_gradients = Matrix3::from_columns(&limbs.map(|limb| limb.angle_gradient));
+            let length_weights = length_gradients * length_information;
+            let angle_weights = angle_gradients * angle_information;
+            let seen = length_weights * length_gradients.transpose() + angle_weights * angle_gradients.transpose();
+            let rates = length_weights * measured.length_rates + angle_weights * measured.angle_rates;
+            let s_dot = solve_positive_definite(&seen, &rates);
+            let pose_information = known_pose + seen;
+            let shared_information = known_shared + length_weights;
+
+            let predicted = last + (last_rate + s_dot) * half_sample;
+            let (off, bias_off) = (s - predicted, biases - last_biases);
+            let length_error = measured.lengths - Vector3::from(limbs.map(|limb| limb.length)) - biases;
+            let angle_error = measured.angles - Vector3::from(limbs.map(|limb| limb.angle()));
+            let residual = length_weights * length_error + angle_weights * angle_error
+                - known_pose * off
+                - known_shared * bias_off;
+            let bias_residual =
+                length_error * length_information - known_shared.tr_mul(&off) - known_bias.component_mul(&bias_off);
+
+            let eliminated = shared_information * Matrix3::from_diagonal(&bias_variance);
+            let step = solve_positive_definite(
+                &(pose_information - eliminated * shared_information.transpose()),
+                &(residual - eliminated * bias_residual),
+            );
             s += step;
-            limbs = Limb::all(geometry, &Pose::new(geometry, &s));
-            normal = normal_matrix(&limbs, length_weight, angle_weight);
+            biases += bias_variance.component_mul(&(bias_residual - shared_information.tr_mul(&step)));
+            iteration += 1;
             // (a NaN ends it too)
-            if !exact && step.amax().partial_cmp(&constant(CONVERGED)) != Some(Ordering::Greater) {
-                break;
+            let converged = step.amax().partial_cmp(&constant(CONVERGED)) != Some(Ordering::Greater);
+            if iteration == ITERATIONS || (converged && !exact) {
+                let estimate = Estimate { s, s_dot };
+                return Fit { estimate, biases, pose_information, shared_information, bias_information };
             }
         }
-        let rates =
-            projected(&limbs, length_weight, angle_weight, |i, _| (measured.length_rates[i], measured.angle_rates[i]));
-        Estimate { s, s_dot: solve_positive_definite(&normal, &rates) }
     }
-}
-
-/// Sum of weighted gradient products over the six sensors.
-fn normal_matrix<T: Scalar>(limbs: &[Limb<T>; 3], length_weight: T, angle_weight: T) -> Matrix3<T> {
-    let mut normal = Matrix3::zeros();
-    for limb in limbs {
-        let (length, angle) = (limb.length_gradient * length_weight, limb.angle_gradient * angle_weight);
-        normal += length * length.transpose() + angle * angle.transpose();
-    }
-    normal
-}
-
-/// Sum of weighted gradients times the (length, angle) `values`.
-fn projected<T: Scalar>(
-    limbs: &[Limb<T>; 3],
-    length_weight: T,
-    angle_weight: T,
-    values: impl Fn(usize, &Limb<T>) -> (T, T),
-) -> Vector3<T> {
-    let mut sum = Vector3::zeros();
-    for (i, limb) in limbs.iter().enumerate() {
-        let (length, angle) = values(i, limb);
-        sum += limb.length_gradient * (length_weight * length_weight * length)
-            + limb.angle_gradient * (angle_weight * angle_weight * angle);
-    }
-    sum
 }

@@ -6,6 +6,7 @@ use rand::distr::{Distribution, StandardUniform};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use serde::{Deserialize, Serialize};
 
+use super::estimator::Deviations;
 use super::sensor_watch::CHANNELS;
 use crate::defaults as d;
 use crate::scalar::Scalar;
@@ -100,21 +101,27 @@ impl Default for SensorParameters {
 }
 
 impl SensorParameters {
-    /// Standard deviations of a length (m) and an angle (rad) reading about its bias, quantization
-    /// included. Where nothing is wrong with the sensors, those of Table 1 unscaled, of which
-    /// only the ratio matters.
-    pub fn deviations(&self) -> (f64, f64) {
+    /// Standard deviations of the readings, quantization included. Where nothing is wrong with the sensors, those of
+    /// Table 1 unscaled, of which only the ratio matters, and no static error.
+    pub fn deviations(&self) -> Deviations {
         let scale = if self.scale > 0.0 { self.scale } else { 1.0 };
         // a uniform error of width q has the variance q^2 / 12
         let deviation = |noise: f64, resolution: f64| {
             scale * (noise * noise + resolution * resolution / 12.0).sqrt().max(SMALLEST_DEVIATION)
         };
-        (deviation(self.length_noise, self.length_resolution), deviation(self.angle_noise, self.angle_resolution))
+        Deviations {
+            length: deviation(self.length_noise, self.length_resolution),
+            angle: deviation(self.angle_noise, self.angle_resolution),
+            // a uniform error within +-b has the variance b^2 / 3
+            length_bias: (self.scale * self.length_bias / 3.0_f64.sqrt()).max(SMALLEST_BIAS),
+        }
     }
 }
 
 /// m or rad; keeps a weight finite where a sensor is perfect.
 const SMALLEST_DEVIATION: f64 = 1e-6;
+/// m; no error that anything could be told from.
+const SMALLEST_BIAS: f64 = 1e-9;
 
 /// The sensors: static errors drawn once, and a generator for the noise.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
