@@ -147,8 +147,8 @@ fn static_errors_of_lengths_are_found_as_well_as_angles_tell_them() {
         let mut error = Vector3::zeros();
         for _ in 0..readings {
             let mut noisy = truth;
-            for i in 0..3 {
-                noisy.lengths[i] += biases[i] + gauss(deviations.length);
+            for (i, bias) in biases.iter().enumerate() {
+                noisy.lengths[i] += bias + gauss(deviations.length);
                 noisy.angles[i] += gauss(deviations.angle);
             }
             error = estimator.update(&model.geometry, &noisy).s - Vector3::from(VIA);
