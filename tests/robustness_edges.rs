@@ -150,6 +150,28 @@ fn any_communication_step_from_a_microsecond_to_a_second_is_served() {
 }
 
 #[test]
+fn steps_without_a_tick_change_nothing_but_the_time() {
+    // powers of two, so that both arrive at the same time to the bit
+    let step = 1.0 / 1024.0;
+    let states = [1, 4].map(|parts| {
+        let controller = Slave::<Controller>::new();
+        controller.initialize();
+        let before = controller.outputs();
+        for k in 0..10 {
+            let point = f64::from(k) * step;
+            assert_eq!(controller.set_real("d1", 0.3 + 1e-4 * f64::from(k)), Status::Ok);
+            for j in 0..parts {
+                let size = step / f64::from(parts);
+                assert_eq!(controller.step(point + f64::from(j) * size, size), Status::Ok);
+            }
+        }
+        assert_ne!(controller.outputs(), before, "there were ticks");
+        controller.serialize(controller.state())
+    });
+    assert!(states[0] == states[1]);
+}
+
+#[test]
 fn work_for_one_call_ends_with_a_discard_and_not_with_a_hang() {
     let plant = Slave::<Plant>::new();
     assert_eq!(plant.set_real("max_step", 1e-6), Status::Ok);

@@ -88,10 +88,10 @@ def pinocchio() -> Path | None:
     )  # fmt: skip
 
 
-def minimal_fmu() -> Path | None:
-    """The library of an FMU that does next to nothing."""
+def c_fmu(name: str) -> Path | None:
+    """The library of an FMU in C that does next to nothing: `minimal_fmu`, or `checked_fmu` with the checks of ours."""
     headers = Path(fmpy.__file__).parent / "c-code"
-    return compiled("gcc", "minimal_fmu.c", "minimal_fmu.so", "-O2", "-shared", "-fPIC", "-isystem", headers)
+    return compiled("gcc", f"{name}.c", f"{name}.so", "-O3", "-shared", "-fPIC", "-isystem", headers)
 
 
 Times = float | Sequence[float]

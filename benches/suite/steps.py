@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import random
+
 from rps3_study.fmu import Fmu
 
 from suite import peers
@@ -49,39 +51,42 @@ def step(native: Native, plant: Fmu, rounds: int) -> tuple[list[Row], Listing]:
     return rows, Listing("communication-step", head, cells)
 
 
+C_FMUS = {"minimal_fmu": "minimal C FMU", "checked_fmu": "C FMU with the same checks"}
+
+
 def calls(native: Native, plant: Fmu, controller: Fmu, rounds: int) -> list[Row]:
-    """GetReal, SetReal and an empty DoStep against the least that an FMU can do."""
-    minimal = peers.minimal_fmu()
-    if minimal is None:
+    """GetReal, SetReal and an empty DoStep against the least that an FMU can do, without checks and with ours."""
+    libraries = {name: peers.c_fmu(name) for name in C_FMUS}
+    if None in libraries.values():
         return []
-    plant_outputs = plant.names("output")
-    inputs = controller.names("input", "Real")
-    measured = {
-        "plant": (plant, plant_outputs, plant.names("input")[:6]),
-        "controller": (controller, controller.names("output", "Real"), inputs),
+    outputs, inputs = plant.names("output", "Real"), controller.names("input", "Real")
+    reading, writing = f"plant: `fmi2GetReal` of {len(outputs)}", f"controller: `fmi2SetReal` of {len(inputs)}"
+    cases = {
+        reading: (plant, "get", outputs),
+        f"{reading} in random order": (plant, "get", shuffled(outputs)),
+        writing: (controller, "set", inputs),
+        f"{writing} in random order": (controller, "set", shuffled(inputs)),
+        "controller: `fmi2DoStep` without a tick": (controller, "step", []),
     }
-    times: dict[str, dict[str, float]] = {}
-    for name, (fmu, get, put) in measured.items():
-        ours = {
-            "library": peers.library(fmu),
-            "guid": fmu.description.guid,
-            "get": [fmu.variables[variable].valueReference for variable in get],
-            "set": [fmu.variables[variable].valueReference for variable in put],
-            "step": EMPTY,
-        }
-        theirs = {**ours, "library": str(minimal), "get": list(range(len(get))), "set": list(range(len(put)))}
-        for key in (name, f"{name} minimal"):
-            times[key] = dict.fromkeys(("set", "step", "get"), float("inf"))
-        for _ in range(rounds):
-            for key, request in ((name, ours), (f"{name} minimal", theirs)):
-                found = native.measure("calls", **request, rounds=20)
-                times[key] = {call: min(least, found[call]) for call, least in times[key].items()}
-    calls_of = {
-        ("plant", "get"): f"plant: `fmi2GetReal` of {len(plant_outputs)}",
-        ("controller", "set"): f"controller: `fmi2SetReal` of {len(inputs)}",
-        ("controller", "step"): "controller: `fmi2DoStep` without a tick",
-    }
+    times: dict[tuple[str, str], float] = {}
+    for _ in range(rounds):
+        for what, (fmu, call, names) in cases.items():
+            references = [fmu.variables[name].valueReference for name in names]
+            # the C FMUs' variables are numbered from 0 on
+            numbers = [sorted(references).index(reference) for reference in references]
+            measured = {"ours": (peers.library(fmu), references)}
+            measured |= {name: (str(library), numbers) for name, library in libraries.items()}
+            for whose, (library, asked) in measured.items():
+                request = {"get": [], "set": [], "step": EMPTY} | ({} if call == "step" else {call: asked})
+                found = native.measure("calls", library=library, guid=fmu.description.guid, rounds=20, **request)
+                times[what, whose] = min(times.get((what, whose), found[call]), found[call])
     return [
-        Row("FMI calls", "minimal C FMU", times[f"{name} minimal"][call], what, times[name][call])
-        for (name, call), what in calls_of.items()
+        Row("FMI calls", title, times[what, name], what, times[what, "ours"])
+        for what in cases
+        for name, title in C_FMUS.items()
     ]
+
+
+def shuffled(names: list[str]) -> list[str]:
+    """The same in an order without order, always the same one."""
+    return random.Random(1).sample(names, len(names))

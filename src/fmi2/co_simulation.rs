@@ -26,8 +26,18 @@ impl<M: Model> Instance<M> {
     /// `fmi2DoStep`: from the instance's own time to exactly `point + step`.
     pub(super) fn do_step(&mut self, point: f64, step: f64) -> CallResult {
         let (from, to) = self.check_step(point, step)?;
-        self.back_up();
         self.now.input_derivatives.begin_step(from);
+        if !self.now.model.idle_until(to) {
+            self.advance(from, to)?;
+        }
+        self.now.input_derivatives.step_done();
+        self.set_current_time(to);
+        Ok(())
+    }
+
+    /// The step itself; if it fails, model and values are as before.
+    fn advance(&mut self, from: f64, to: f64) -> CallResult {
+        self.back_up();
         let Snapshot { model, values, input_derivatives, .. } = &mut self.now;
         let inputs = Inputs::new(self.layout, &self.step_start.1.reals, input_derivatives);
         let result = model
@@ -41,8 +51,6 @@ impl<M: Model> Instance<M> {
             }
             return Err(error);
         }
-        self.now.input_derivatives.step_done();
-        self.set_current_time(to);
         self.now.stale = false;
         Ok(())
     }

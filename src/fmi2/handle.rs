@@ -1,6 +1,8 @@
 //! What an `fmi2Component` points to.
 
-use std::sync::{Mutex, MutexGuard, TryLockError};
+use std::any::TypeId;
+
+use try_lock::{Locked, TryLock};
 
 use super::instance::Instance;
 use super::lasting::Stay;
@@ -10,6 +12,9 @@ use super::types::Component;
 /// First in memory, where it can be looked at before anything else is believed.
 const MAGIC: u64 = u64::from_ne_bytes(*b"rps3fmi2");
 
+/// Its address stands for this library: no other has it, not even a second copy of the same file.
+static LIBRARY: u8 = 0;
+
 /// An instance with what tells a wrong pointer and a wrong moment.
 ///
 /// A component of another FMU of this kind and, mostly, one that was freed are recognized; a
@@ -18,8 +23,9 @@ const MAGIC: u64 = u64::from_ne_bytes(*b"rps3fmi2");
 #[repr(C)]
 pub(super) struct Handle<M> {
     magic: u64,
-    guid: &'static str,
-    instance: Mutex<Instance<M>>,
+    library: *const u8,
+    model: TypeId,
+    instance: TryLock<Instance<M>>,
     /// Ends after the instance, whose tables it keeps.
     _stay: Stay,
 }
@@ -27,11 +33,12 @@ pub(super) struct Handle<M> {
 impl<M: Model> Handle<M> {
     /// Hands an instance out to C.
     pub fn hand_out(instance: Instance<M>, stay: Stay) -> Component {
-        let handle = Self { magic: MAGIC, guid: M::guid(), instance: Mutex::new(instance), _stay: stay };
+        let (library, model) = (&raw const LIBRARY, TypeId::of::<M>());
+        let handle = Self { magic: MAGIC, library, model, instance: TryLock::new(instance), _stay: stay };
         Box::into_raw(Box::new(handle)).cast()
     }
 
-    /// What stands behind `component`, `None` if that is no instance of this model.
+    /// What stands behind `component`, `None` if that is no instance of this model, made by this library.
     ///
     /// # Safety
     /// `component` is null or came from [`hand_out`](Self::hand_out), of this model or another, and
@@ -41,19 +48,20 @@ impl<M: Model> Handle<M> {
         if handle.is_null() || !handle.is_aligned() {
             return None;
         }
-        // SAFETY: handles of all models begin with the same two fields, and the second is read only
-        // if the first is right.
-        unsafe { ((*handle).magic == MAGIC && (*handle).guid == M::guid()).then(|| &*handle) }
+        // SAFETY: handles of all libraries begin with the same two fields, those of this library with the same
+        // three, and each is read only if what stands before it is right.
+        unsafe {
+            let ours = (*handle).magic == MAGIC
+                && std::ptr::eq((*handle).library, &raw const LIBRARY)
+                && (*handle).model == TypeId::of::<M>();
+            ours.then(|| &*handle)
+        }
     }
 
-    /// The instance, unless a call on it is under way.
-    pub fn lock(&self) -> Option<MutexGuard<'_, Instance<M>>> {
-        match self.instance.try_lock() {
-            Ok(instance) => Some(instance),
-            // of no importance: the instance itself knows whether it can still be used
-            Err(TryLockError::Poisoned(poisoned)) => Some(poisoned.into_inner()),
-            Err(TryLockError::WouldBlock) => None,
-        }
+    /// The instance, unless a call on it is under way. One that a panic has left is given out as well: it knows itself
+    /// whether it can still be used.
+    pub fn lock(&self) -> Option<Locked<'_, Instance<M>>> {
+        self.instance.try_lock()
     }
 
     /// Takes back what `component` points to, unless a call on it is under way.
@@ -63,13 +71,13 @@ impl<M: Model> Handle<M> {
     pub unsafe fn take_back(component: Component) -> Option<Box<Self>> {
         // SAFETY: passed on to the caller.
         let idle = unsafe { Self::behind(component) }?.lock()?;
+        // locked for good
+        std::mem::forget(idle);
         let handle: *mut Self = component.cast();
         // SAFETY: it is a handle that no call is using. The mark is gone before the memory is, so that a
         // second try finds none if the memory still stands.
         unsafe { std::ptr::write_volatile(&raw mut (*handle).magic, 0) };
-        // the box must be the only way to its content
-        drop(idle);
-        // SAFETY: from `Box::into_raw`, and taken back once, as the mark tells.
+        // SAFETY: from `Box::into_raw`, and taken back once, as the mark and the lock tell.
         Some(unsafe { Box::from_raw(handle) })
     }
 }

@@ -1,5 +1,7 @@
 //! What the layer needs to know of a definition, by value reference and slot.
 
+use std::ops::Range;
+
 use super::call_table::{Mode, Modes};
 use crate::description::{Causality, Definition, Initial, Kind, Unknown, Variability, Variable, VariableType};
 
@@ -40,18 +42,67 @@ pub struct Entry {
 #[derive(Debug, Clone, Default)]
 pub struct Table {
     pub entries: Vec<Entry>,
-    /// The slot of each value reference, [`NONE`] where there is none: references are small numbers, and
-    /// hosts ask for dozens a step.
-    slots: Vec<u32>,
+    /// By value reference: these are small numbers, and hosts ask for dozens a step.
+    places: Vec<Place>,
+    gates: Gates,
 }
 
-const NONE: u32 = u32::MAX;
+/// Where a value reference leads.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    slot: u32,
+    /// How many references from this one on lead to slots that follow each other; zero where there is no variable.
+    run: u32,
+}
+
+/// What a value must pass to be set by no more than a copy, in columns, of which the processor compares several
+/// rows at once.
+#[derive(Debug, Clone, Default)]
+struct Gates {
+    /// As [`Entry::settable`]; nowhere for states, which the model has to be told of.
+    settable: Vec<Modes>,
+    /// As [`Entry::min`], but finite, so that infinities are below.
+    min: Vec<f64>,
+    /// As [`Entry::max`], but finite.
+    max: Vec<f64>,
+}
 
 impl Table {
     /// The slot behind a value reference.
     #[inline]
     pub fn slot(&self, reference: u32) -> Option<usize> {
-        self.slots.get(reference as usize).filter(|slot| **slot != NONE).map(|slot| *slot as usize)
+        self.places.get(reference as usize).filter(|place| place.run > 0).map(|place| place.slot as usize)
+    }
+
+    /// The slots behind `references` if these follow each other and so do the slots, as those of most requests do.
+    #[inline]
+    pub fn run(&self, references: &[u32]) -> Option<Range<usize>> {
+        let first = *references.first()?;
+        let Place { slot, run } = *self.places.get(first as usize)?;
+        // without an early end, so that several are compared at once
+        let follow = |differences, (reference, expected)| differences | (reference ^ expected);
+        let run = references.len() <= run as usize && references.iter().zip(first..).fold(0, follow) == 0;
+        run.then(|| slot as usize..slot as usize + references.len())
+    }
+
+    /// Copies the `values` behind `references` one by one; the error is a reference behind which there is none.
+    pub fn gather(&self, values: &[f64], references: &[u32], out: &mut [f64]) -> Result<(), u32> {
+        let places = &self.places[..];
+        for (&reference, out) in references.iter().zip(out) {
+            let place = places.get(reference as usize).filter(|place| place.run > 0).ok_or(reference)?;
+            *out = values[place.slot as usize];
+        }
+        Ok(())
+    }
+
+    /// Whether `values` may be copied into `slots` in `mode`: variables other than states, settable, the values finite
+    /// and within their limits.
+    #[inline]
+    pub fn admits(&self, slots: &Range<usize>, values: &[f64], mode: Mode) -> bool {
+        let (min, max) = (&self.gates.min[slots.clone()], &self.gates.max[slots.clone()]);
+        let within = |all, ((value, min), max)| all & (min <= value) & (value <= max);
+        self.gates.settable[slots.clone()].iter().fold(Modes::ALL, |all, modes| all.both(*modes)).contains(mode)
+            && values.iter().zip(min).zip(max).fold(true, within)
     }
 
     fn new(definition: &Definition, variable_type: VariableType) -> Self {
@@ -59,11 +110,23 @@ impl Table {
         let mut inputs = 0;
         let entries: Vec<Entry> = variables.clone().map(|(i, v)| entry(definition, i, v, &mut inputs)).collect();
         let largest = variables.clone().map(|(_, v)| v.value_reference).max();
-        let mut slots = vec![NONE; largest.map_or(0, |reference| reference as usize + 1)];
+        let mut places = vec![Place { slot: 0, run: 0 }; largest.map_or(0, |reference| reference as usize + 1)];
         for (slot, (_, v)) in (0..).zip(variables) {
-            slots[v.value_reference as usize] = slot;
+            places[v.value_reference as usize] = Place { slot, run: 1 };
         }
-        Self { entries, slots }
+        for reference in (1..places.len()).rev() {
+            let next = places[reference];
+            let place = &mut places[reference - 1];
+            if place.run > 0 && next.run > 0 && next.slot == place.slot + 1 {
+                place.run += next.run;
+            }
+        }
+        let gates = Gates {
+            settable: entries.iter().map(|e| if e.state.is_some() { Modes::NONE } else { e.settable }).collect(),
+            min: entries.iter().map(|e| e.min.max(f64::MIN)).collect(),
+            max: entries.iter().map(|e| e.max.min(f64::MAX)).collect(),
+        };
+        Self { entries, places, gates }
     }
 }
 

@@ -109,6 +109,12 @@ pub trait Model: Clone + Serialize + DeserializeOwned + Send + 'static {
     /// their variables. A solver of the host asks for these alone, many times a step.
     fn derivatives(&self, values: &Values, time: f64, derivatives: &mut [f64]) -> ModelResult;
 
+    /// Whether nothing happens up to `to`, seconds: [`Model::step`] would change neither model nor values. The layer then
+    /// spares itself the copy of both from which it restores a step that fails.
+    fn idle_until(&self, _to: f64) -> bool {
+        false
+    }
+
     /// Advances from `from` to `to` (Co-Simulation) and writes the calculated variables there.
     /// On error the layer restores model and values as they were before the call.
     fn step(

@@ -8,46 +8,61 @@ use super::instance::Instance;
 use super::layout::{Entry, Layout, Table};
 use super::model::Model;
 use super::types::{Boolean, FALSE, Interface, TRUE, ValueReference};
+use crate::description::Variable;
 
 /// The slot behind `reference`, or why there is none.
+#[inline]
 pub(super) fn slot(table: &Table, type_name: &str, reference: ValueReference) -> CallResult<usize> {
-    table
-        .slot(reference)
-        .ok_or_else(|| CallError::Refused(format!("there is no {type_name} variable with value reference {reference}")))
+    match table.slot(reference) {
+        Some(slot) => Ok(slot),
+        None => Err(no_such_variable(type_name, reference)),
+    }
+}
+
+#[cold]
+fn no_such_variable(type_name: &str, reference: ValueReference) -> CallError {
+    CallError::Refused(format!("there is no {type_name} variable with value reference {reference}"))
 }
 
 impl Layout {
-    /// The slot behind `reference` if that variable may be set in `mode`.
-    fn settable_slot(
-        &self,
-        table: &Table,
+    /// The variable behind `reference`, if it may be set in `mode`.
+    #[inline]
+    fn settable<'a>(
+        &'a self,
+        table: &'a Table,
         type_name: &str,
         reference: ValueReference,
         mode: Mode,
-    ) -> CallResult<usize> {
-        let slot = slot(table, type_name, reference)?;
-        let entry = &table.entries[slot];
-        if entry.settable.contains(mode) {
-            Ok(slot)
+    ) -> CallResult<&'a Entry> {
+        let entry = &table.entries[slot(table, type_name, reference)?];
+        if entry.settable.contains(mode) { Ok(entry) } else { Err(self.not_settable(entry, mode)) }
+    }
+
+    #[cold]
+    fn not_settable(&self, entry: &Entry, mode: Mode) -> CallError {
+        let Variable { name, causality, variability, .. } = &self.definition.variables[entry.variable];
+        CallError::Refused(format!("{name} ({causality:?}, {variability:?}) cannot be set in state {mode:?}"))
+    }
+
+    #[inline]
+    fn check_limits<T: Copy + Debug + Into<f64>>(&self, entry: &Entry, value: T) -> CallResult {
+        let number = value.into();
+        if number.is_finite() && entry.min <= number && number <= entry.max {
+            Ok(())
         } else {
-            let variable = &self.definition.variables[entry.variable];
-            Err(CallError::Refused(format!(
-                "{} ({:?}, {:?}) cannot be set in state {mode:?}",
-                variable.name, variable.causality, variable.variability
-            )))
+            Err(self.beyond_limits(entry, value))
         }
     }
 
-    fn check_limits<T: Copy + Debug + Into<f64>>(&self, entry: &Entry, value: T) -> CallResult {
+    #[cold]
+    fn beyond_limits<T: Copy + Debug + Into<f64>>(&self, entry: &Entry, value: T) -> CallError {
         let (name, number) = (self.name(entry), value.into());
         if !number.is_finite() {
-            Err(CallError::Refused(format!("{name} = {value:?} is not finite")))
+            CallError::Refused(format!("{name} = {value:?} is not finite"))
         } else if number < entry.min {
-            Err(CallError::Refused(format!("{name} = {value:?} is below its minimum {:?}", entry.min)))
-        } else if number > entry.max {
-            Err(CallError::Refused(format!("{name} = {value:?} is above its maximum {:?}", entry.max)))
+            CallError::Refused(format!("{name} = {value:?} is below its minimum {:?}", entry.min))
         } else {
-            Ok(())
+            CallError::Refused(format!("{name} = {value:?} is above its maximum {:?}", entry.max))
         }
     }
 }
@@ -55,31 +70,18 @@ impl Layout {
 impl<M: Model> Instance<M> {
     /// `fmi2GetReal`
     pub(super) fn get_real(&mut self, references: &[ValueReference], out: &mut [f64]) -> CallResult {
-        let mut calculated = false;
-        for (&reference, out) in references.iter().zip(&mut *out) {
-            let slot = slot(&self.layout.reals, "Real", reference)?;
-            calculated |= self.layout.reals.entries[slot].calculated;
-            *out = self.now.values.reals[slot];
+        self.bring_up_to_date(|layout| &layout.reals, "Real", references, true)?;
+        let (table, values) = (&self.layout.reals, &self.now.values.reals[..]);
+        if let Some(slots) = table.run(references) {
+            out.copy_from_slice(&values[slots]);
+            return Ok(());
         }
-        if calculated && self.now.stale {
-            self.refresh_for_get(true)?;
-            for (&reference, out) in references.iter().zip(out) {
-                *out = self.now.values.reals[slot(&self.layout.reals, "Real", reference)?];
-            }
-        }
-        Ok(())
+        table.gather(values, references, out).map_err(|reference| no_such_variable("Real", reference))
     }
 
     /// `fmi2GetInteger`
     pub(super) fn get_integer(&mut self, references: &[ValueReference], out: &mut [i32]) -> CallResult {
-        let mut calculated = false;
-        for &reference in references {
-            let slot = slot(&self.layout.integers, "Integer", reference)?;
-            calculated |= self.layout.integers.entries[slot].calculated;
-        }
-        if calculated && self.now.stale {
-            self.refresh_for_get(false)?;
-        }
+        self.bring_up_to_date(|layout| &layout.integers, "Integer", references, false)?;
         for (&reference, out) in references.iter().zip(out) {
             *out = self.now.values.integers[slot(&self.layout.integers, "Integer", reference)?];
         }
@@ -88,14 +90,7 @@ impl<M: Model> Instance<M> {
 
     /// `fmi2GetBoolean`
     pub(super) fn get_boolean(&mut self, references: &[ValueReference], out: &mut [Boolean]) -> CallResult {
-        let mut calculated = false;
-        for &reference in references {
-            let slot = slot(&self.layout.booleans, "Boolean", reference)?;
-            calculated |= self.layout.booleans.entries[slot].calculated;
-        }
-        if calculated && self.now.stale {
-            self.refresh_for_get(false)?;
-        }
+        self.bring_up_to_date(|layout| &layout.booleans, "Boolean", references, false)?;
         for (&reference, out) in references.iter().zip(out) {
             let value = self.now.values.booleans[slot(&self.layout.booleans, "Boolean", reference)?];
             *out = if value { TRUE } else { FALSE };
@@ -103,9 +98,27 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// A refresh before values are read; `fmi2Discard` exists for `fmi2GetReal` of Model Exchange
-    /// alone (section 2.1.3).
-    fn refresh_for_get(&mut self, discard: bool) -> CallResult {
+    /// Computes the variables behind `references` before they are read, if they are computed and something has changed.
+    ///
+    /// `fmi2Discard` exists for `fmi2GetReal` of Model Exchange alone (section 2.1.3).
+    fn bring_up_to_date(
+        &mut self,
+        table: impl Fn(&Layout) -> &Table,
+        type_name: &str,
+        references: &[ValueReference],
+        discard: bool,
+    ) -> CallResult {
+        if !self.now.stale {
+            return Ok(());
+        }
+        let table = table(self.layout);
+        let mut calculated = false;
+        for &reference in references {
+            calculated |= table.entries[slot(table, type_name, reference)?].calculated;
+        }
+        if !calculated {
+            return Ok(());
+        }
         let result = self.refresh();
         if discard && self.now.interface == Interface::ModelExchange {
             result
@@ -118,9 +131,30 @@ impl<M: Model> Instance<M> {
     /// last value, the others are set, and the host is warned.
     pub(super) fn set_real(&mut self, references: &[ValueReference], values: &[f64]) -> CallResult {
         let Self { layout, now, .. } = self;
+        let table = &layout.reals;
+        if let Some(slots) = table.run(references)
+            && table.admits(&slots, values, now.mode)
+        {
+            now.values.reals[slots.clone()].copy_from_slice(values);
+            now.values.missing[slots].fill(false);
+            now.stale = true;
+            return Ok(());
+        }
+        self.set_one_by_one(references, values)
+    }
+
+    /// As [`set_real`](Self::set_real), for what is no plain run of values: scattered variables, states, missing
+    /// measurements, and values that are refused.
+    #[inline(never)] // within `set_real` either would get too few registers
+    fn set_one_by_one(&mut self, references: &[ValueReference], values: &[f64]) -> CallResult {
+        let Self { layout, now, .. } = self;
+        let table = &layout.reals;
         for (&reference, &value) in references.iter().zip(values) {
-            let slot = layout.settable_slot(&layout.reals, "Real", reference, now.mode)?;
-            let entry = &layout.reals.entries[slot];
+            let slot = slot(table, "Real", reference)?;
+            if table.admits(&(slot..slot + 1), &[value], now.mode) {
+                continue;
+            }
+            let entry = layout.settable(table, "Real", reference, now.mode)?;
             if value.is_finite() || !entry.may_be_missing {
                 layout.check_limits(entry, value)?;
             }
@@ -152,8 +186,8 @@ impl<M: Model> Instance<M> {
     pub(super) fn set_integer(&mut self, references: &[ValueReference], values: &[i32]) -> CallResult {
         let Self { layout, now, .. } = self;
         for (&reference, &value) in references.iter().zip(values) {
-            let slot = layout.settable_slot(&layout.integers, "Integer", reference, now.mode)?;
-            layout.check_limits(&layout.integers.entries[slot], value)?;
+            let entry = layout.settable(&layout.integers, "Integer", reference, now.mode)?;
+            layout.check_limits(entry, value)?;
         }
         for (&reference, &value) in references.iter().zip(values) {
             now.values.integers[slot(&layout.integers, "Integer", reference)?] = value;
@@ -166,7 +200,7 @@ impl<M: Model> Instance<M> {
     pub(super) fn set_boolean(&mut self, references: &[ValueReference], values: &[Boolean]) -> CallResult {
         let Self { layout, now, .. } = self;
         for &reference in references {
-            layout.settable_slot(&layout.booleans, "Boolean", reference, now.mode)?;
+            layout.settable(&layout.booleans, "Boolean", reference, now.mode)?;
         }
         for (&reference, &value) in references.iter().zip(values) {
             now.values.booleans[slot(&layout.booleans, "Boolean", reference)?] = value != FALSE;

@@ -10,7 +10,7 @@ use std::ptr;
 
 use rps3::control::{ControllerParameters, Mode, Tuning};
 use rps3::coupling::Experiment;
-use rps3::description::{Kind, VariableType};
+use rps3::description::{Causality, Kind, VariableType};
 use rps3::dynamics::PlantParameters;
 use rps3::fmi2::types::{CallbackFunctions, Component, FmuState, Interface, LoggerCallback, Status, ValueReference};
 use rps3::fmi2::{Lasting, Layout, Model, api};
@@ -149,14 +149,21 @@ impl<M: Fmu> Slave<M> {
 
     /// Sets Reals by value reference.
     pub fn set_references(&self, references: &[ValueReference], values: &[f64]) -> Status {
+        assert_eq!(references.len(), values.len());
         call!(self, set_real(references.as_ptr(), references.len(), values.as_ptr()))
     }
 
     /// Reads Reals by value reference.
     pub fn get_references(&self, references: &[ValueReference]) -> Vec<f64> {
         let mut values = vec![f64::NAN; references.len()];
-        assert_eq!(call!(self, get_real(references.as_ptr(), references.len(), values.as_mut_ptr())), Status::Ok);
+        assert_eq!(self.read_references(references, &mut values), Status::Ok);
         values
+    }
+
+    /// Reads Reals by value reference, into `values`.
+    pub fn read_references(&self, references: &[ValueReference], values: &mut [f64]) -> Status {
+        assert_eq!(references.len(), values.len());
+        call!(self, get_real(references.as_ptr(), references.len(), values.as_mut_ptr()))
     }
 
     pub fn set_real(&self, name: &str, value: f64) -> Status {
@@ -196,11 +203,14 @@ impl<M: Fmu> Slave<M> {
 
     /// All Reals that are outputs, in the table's order.
     pub fn outputs(&self) -> Vec<f64> {
-        use rps3::description::Causality::Output;
+        self.get_references(&Self::references(Causality::Output))
+    }
+
+    /// Value references of all Reals of one causality, in the table's order.
+    pub fn references(causality: Causality) -> Vec<ValueReference> {
         let variables = &M::definition().variables;
-        let reals = variables.iter().filter(|v| v.causality == Output && v.variable_type() == VariableType::Real);
-        let references: Vec<_> = reals.map(|v| v.value_reference).collect();
-        self.get_references(&references)
+        let reals = variables.iter().filter(|v| v.causality == causality && v.variable_type() == VariableType::Real);
+        reals.map(|v| v.value_reference).collect()
     }
 
     pub fn setup(&self, start: f64, stop: Option<f64>) -> Status {
@@ -271,8 +281,8 @@ impl<M: Fmu> Slave<M> {
 
 /// What the controller reads of the plant, and the plant of the controller.
 pub fn connections() -> (Vec<String>, Vec<String>) {
-    use rps3::description::Causality::{Input, Output};
-    fn names<M: Model>(causality: rps3::description::Causality) -> Vec<String> {
+    use Causality::{Input, Output};
+    fn names<M: Model>(causality: Causality) -> Vec<String> {
         M::definition().variables.iter().filter(|v| v.causality == causality).map(|v| v.name.clone()).collect()
     }
     let common = |outputs: Vec<String>, inputs: &[String]| -> Vec<String> {

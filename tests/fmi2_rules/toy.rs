@@ -22,8 +22,9 @@ pub mod real {
     pub const U: u32 = 1;
     pub const W: u32 = 2;
     pub const X: u32 = 10;
-    pub const V: u32 = 11;
-    pub const A: u32 = 12;
+    // not in the order of the variables
+    pub const V: u32 = 12;
+    pub const A: u32 = 11;
     pub const Y: u32 = 13;
     pub const HELD: u32 = 14;
     pub const K: u32 = 20;

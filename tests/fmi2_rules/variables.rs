@@ -143,6 +143,52 @@ fn a_refused_set_call_changes_nothing() {
 }
 
 #[test]
+fn variables_read_together_are_those_read_one_by_one() {
+    let host = Host::initialized(CoSimulation);
+    for first in 0..26 {
+        for last in first..26 {
+            let references: Vec<u32> = (first..=last).collect();
+            let alone: Vec<(Status, f64)> = references.iter().map(|&reference| host.get_real(reference)).collect();
+            let mut values = vec![0.0; references.len()];
+            let status = call!(fmi2GetReal(host.c, references.as_ptr(), references.len(), values.as_mut_ptr()));
+            let all_are_there = alone.iter().all(|(status, _)| *status == Status::Ok);
+            assert_eq!(status == Status::Ok, all_are_there, "{first} to {last}");
+            if all_are_there {
+                assert!(alone.iter().map(|(_, value)| value).eq(&values), "{first} to {last}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_order_in_which_variables_are_set_does_not_matter() {
+    let hosts: [fn() -> Host; 5] = [
+        || Host::new(ModelExchange),
+        || in_initialization(CoSimulation),
+        || Host::initialized(ModelExchange),
+        Host::continuous,
+        || Host::initialized(CoSimulation),
+    ];
+    let values = [1.0, 100.0, 100.5, -0.5, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+    let pairs = (0..25).map(|reference| [reference, reference + 1]);
+    for (make, references) in hosts.into_iter().flat_map(|make| pairs.clone().map(move |pair| (make, pair))) {
+        for values in values.into_iter().flat_map(|a| values.map(|b| [a, b])) {
+            let set = |references: [u32; 2], values: [f64; 2]| {
+                let host = make();
+                let before = host.serialize(host.state());
+                let status = call!(fmi2SetReal(host.c, references.as_ptr(), 2, values.as_ptr()));
+                let after = host.serialize(host.state());
+                assert_eq!(status == Status::Ok, before != after, "{references:?} = {values:?}");
+                (status, after)
+            };
+            let backward = |[a, b]: [f64; 2]| [b, a];
+            let reversed = set([references[1], references[0]], backward(values));
+            assert!(set(references, values) == reversed, "{references:?} = {values:?}");
+        }
+    }
+}
+
+#[test]
 fn set_and_get_interchange_in_initialization_mode() {
     for interface in [ModelExchange, CoSimulation] {
         let host = in_initialization(interface);

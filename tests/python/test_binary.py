@@ -1,6 +1,7 @@
 """The shared library and its model description tell the same."""
 
 import ctypes
+import shutil
 from pathlib import Path
 
 import lief
@@ -132,3 +133,15 @@ def test_no_mathematical_function_comes_from_the_platform(fmu: Fmu) -> None:
         imported = {str(function.name).lstrip("_") for function in binary.imported_functions}
         assert imported, "every library imports something"
         assert not names & imported
+
+
+def test_a_component_of_another_copy_of_the_library_is_refused(fmu: Fmu, tmp_path: Path) -> None:
+    # code and tables of both copies are the same, but the component's go when its own library is unloaded
+    other = ctypes.CDLL(str(shutil.copy(library(fmu), tmp_path)))
+    other.fmi2FreeInstance.restype = None
+    with Instance(fmu) as instance:
+        instance.initialize({})
+        component = ctypes.c_void_p(instance.slave.component)
+        assert other.fmi2Reset(component) == fmi2.fmi2Error
+        other.fmi2FreeInstance(component)
+        instance.step(0.0, 1e-3)

@@ -23,7 +23,8 @@ pub struct Options {
 }
 
 /// Functions of examples/instructions.rs and how often it calls each.
-const PATHS: [&str; 3] = ["right_hand_side", "plant_step", "controller_tick"];
+const PATHS: [&str; 6] =
+    ["right_hand_side", "plant_step", "controller_tick", "fmi_outputs", "fmi_inputs", "fmi_empty_step"];
 const CALLS: u64 = 100;
 /// Largest relative change that is not a finding.
 const BAND: f64 = 0.05;

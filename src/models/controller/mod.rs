@@ -279,6 +279,12 @@ impl Controller {
         self.start_time + self.tick as f64 * self.sample_time
     }
 
+    /// Whether a tick belongs to a step that ends at `to`, s. One at `to` itself belongs to the next: the master has
+    /// yet to set the inputs for it.
+    fn is_due_before(&self, to: f64) -> bool {
+        self.due() < to - DUE * self.sample_time
+    }
+
     /// Makes the due tick with these inputs, `fresh` if the host may have set them since the last.
     fn make_tick(
         &mut self,
@@ -426,6 +432,10 @@ impl Model for Controller {
         Ok(())
     }
 
+    fn idle_until(&self, to: f64) -> bool {
+        !self.is_due_before(to)
+    }
+
     fn step(
         &mut self,
         values: &mut Values,
@@ -434,11 +444,10 @@ impl Model for Controller {
         to: f64,
         log: &mut dyn Log,
     ) -> ModelResult {
-        // A tick at `to` belongs to the next step: the master has yet to set the inputs for it.
         self.make_ticks(
             values,
             to,
-            |controller| controller.due() < to - DUE * controller.sample_time,
+            |controller| controller.is_due_before(to),
             |_, due| inputs_from(|slot| inputs.at(slot, due.max(from))),
             log,
         )
