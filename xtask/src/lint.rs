@@ -4,6 +4,10 @@ use anyhow::Result;
 
 use crate::{command, python, setup};
 
+/// Manifests of programs whose dependencies concern nobody else, and where they are built.
+const WORKSPACES_OF_THEIR_OWN: [(&str, &str); 2] =
+    [("tests/fmi_master/Cargo.toml", "target/fmi-master"), ("benches/native/Cargo.toml", "target/bench")];
+
 /// Checks format, lints and documentation of the Rust code, and the Python code.
 ///
 /// # Errors
@@ -11,12 +15,13 @@ use crate::{command, python, setup};
 pub fn run() -> Result<()> {
     setup::run()?;
     command::run(&mut command::cargo(&["fmt", "--all", "--check"]))?;
-    command::run(&mut command::cargo(&["fmt", "--manifest-path=benches/native/Cargo.toml", "--check"]))?;
     command::run(&mut command::cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
-    let masters = ["--manifest-path=tests/fmi_master/Cargo.toml"];
-    command::run(command::cargo(&["fmt", "--check"]).args(masters))?;
-    let mut clippy = command::cargo(&["clippy", "--locked", "--all-targets", "--target-dir=target/fmi-master"]);
-    command::run(clippy.args(masters).args(["--", "-D", "warnings"]))?;
+    for (manifest, target) in WORKSPACES_OF_THEIR_OWN {
+        let (manifest, target) = (format!("--manifest-path={manifest}"), format!("--target-dir={target}"));
+        command::run(&mut command::cargo(&["fmt", "--check", &manifest]))?;
+        let clippy = ["clippy", "--locked", "--all-targets", &manifest, &target, "--", "-D", "warnings"];
+        command::run(&mut command::cargo(&clippy))?;
+    }
     let mut doc = command::cargo(&["doc", "--workspace", "--no-deps", "--quiet"]);
     command::run(doc.env("RUSTDOCFLAGS", "-D warnings"))?;
     let python_code = ["python", "tests/python", "examples", "benches"];
