@@ -47,20 +47,8 @@ def compiled(compiler: str, directory: Path, *flags: str) -> Path:
     headers = Path(fmpy.__file__).parent / "c-code"
     warnings = ["-std=c11", "-Wall", "-Wextra", "-Werror"]
     source = ROOT / "tests/c/client.c"
-    command = [
-        compiler,
-        *warnings,
-        "-g",
-        "-O1",
-        *flags,
-        f"-I{headers}",
-        source,
-        "-o",
-        program,
-        "-ldl",
-        "-lm",
-        "-pthread",
-    ]
+    libraries = ["-ldl", "-lm", "-pthread"]
+    command = [compiler, *warnings, "-g", "-O1", f"-I{headers}", source, "-o", program, *flags, *libraries]
     subprocess.run(list(map(str, command)), check=True)
     return program
 
@@ -177,3 +165,14 @@ def test_address_sanitizer_finds_nothing(fmu: Fmu, compiler: str, tmp_path: Path
     watched = Path(directory) / f"lib{fmu.description.coSimulation.modelIdentifier}.so"
     client = compiled(compiler, tmp_path, "-fsanitize=address")
     run([client, *arguments(fmu, watched, what, count)])
+
+
+def test_thread_sanitizer_finds_no_race(fmu: Fmu, compiler: str, tmp_path: Path) -> None:
+    directory, sanitizer = (os.environ.get(f"RPS3_THREAD_{what}") for what in ("SANITIZED", "SANITIZER"))
+    if directory is None or sanitizer is None:
+        pytest.skip("no libraries for ThreadSanitizer: `cargo xtask memory` builds them")
+    watched = Path(directory) / f"lib{fmu.description.coSimulation.modelIdentifier}.so"
+    # the whole of it, and in sight of the libraries
+    client = compiled(compiler, tmp_path, "-rdynamic", "-Wl,--whole-archive", sanitizer, "-Wl,--no-whole-archive")
+    # the first instance is made before, as for helgrind: it sees the standard library's OnceLock as little
+    run([client, *arguments(fmu, watched, "later", 16)])

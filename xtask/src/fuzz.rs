@@ -1,8 +1,10 @@
 //! `cargo xtask fuzz`: the fuzz targets under libFuzzer, which breeds inputs that reach new code.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::SystemTime;
 
 use anyhow::{Result, bail};
 use clap::Args;
@@ -41,11 +43,11 @@ pub struct Options {
 /// `cargo test` runs.
 ///
 /// # Errors
-/// When a target finds something or cannot be built.
+/// When a target finds something, ends before its time without a finding, or cannot be built.
 pub fn run(options: &Options) -> Result<()> {
     let directory = workspace::root().join("fuzz");
     let binaries = build(&directory, options.address_sanitizer)?;
-    let mut broken = Vec::new();
+    let mut failures = Vec::new();
     for target in TARGETS {
         if options.target.as_ref().is_some_and(|only| only != target) {
             continue;
@@ -75,14 +77,32 @@ pub fn run(options: &Options) -> Result<()> {
                 "-print_final_stats=1",
             ])
             .env("RUST_BACKTRACE", "1");
-        if command::run(&mut fuzzer).is_err() {
-            broken.push(target);
+        let before = findings(&artifacts)?;
+        if let Err(error) = command::run(&mut fuzzer) {
+            failures.push(if findings(&artifacts)? == before {
+                format!("{target} found nothing, but was cut short: {error:#}")
+            } else {
+                format!("{target} found something, see fuzz/artifacts/{target}/")
+            });
         }
     }
-    if !broken.is_empty() {
-        bail!("{} found something, see fuzz/artifacts/", broken.join(", "));
+    if !failures.is_empty() {
+        bail!("{}", failures.join("\n"));
     }
     Ok(())
+}
+
+/// Inputs that broke a promise, crashed, hung or took too much memory, with the time they were written. Slow ones, of
+/// which libFuzzer only takes note, do not count.
+fn findings(artifacts: &Path) -> Result<BTreeMap<PathBuf, SystemTime>> {
+    let mut found = BTreeMap::new();
+    for entry in fs::read_dir(artifacts)? {
+        let entry = entry?;
+        if !entry.file_name().to_string_lossy().starts_with("slow-unit-") {
+            found.insert(entry.path(), entry.metadata()?.modified()?);
+        }
+    }
+    Ok(found)
 }
 
 /// The directory with the targets' binaries.
