@@ -1,33 +1,37 @@
 //! Peak pose errors over random crossings: tilt 3 to 12 deg in any direction, any sheet of the
 //! singular surface within the joints' limits, three and six motors, with and without noise on the
-//! limb lengths. Prints the distribution for each mode and every crossing in which the swarm
-//! is worse than the best fixed damping, with the likely cause:
-//! `cargo run --release --example random_crossings [crossings, default 500]`.
-
-use std::num::NonZero;
-use std::sync::atomic::{AtomicUsize, Ordering};
+//! limb lengths; with `constant-speed` at constant speed instead of the quintic profile. Prints the distribution
+//! for each mode and every crossing in which the swarm is worse than the best fixed damping, with the likely cause:
+//! `cargo run --release --example random_crossings [crossings, default 500] [constant-speed]`.
 
 use nalgebra::Vector3;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
+use rps3::control::Profile;
 use rps3::coupling::Experiment;
 use rps3::defaults::DEG;
 use rps3::dynamics::{Inputs, PlantModel, PlantParameters, settled_currents};
-use rps3::study::{Crossing, Distribution, Figures, MODES};
+use rps3::study::{Crossing, Distribution, Figures, MODES, in_parallel};
 
 /// Standard deviations of the noise on the limb lengths, m.
 const NOISES: [f64; 2] = [0.0, 1e-4];
 
-fn main() -> Result<(), std::num::ParseIntError> {
+fn main() -> anyhow::Result<()> {
     let count = std::env::args().nth(1).map_or(Ok(500), |argument| argument.parse())?;
+    let profile = match std::env::args().nth(2).as_deref() {
+        None => Profile::Quintic,
+        Some("constant-speed") => Profile::ConstantSpeed,
+        Some(other) => anyhow::bail!("unknown option {other}"),
+    };
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(1);
     let crossings: Vec<_> = (0..count).map(|_| Crossing::random(&PlantParameters::default(), &mut rng)).collect();
     for (variant, revolute_motors) in [("six motors", true), ("three motors", false)] {
         for length_noise in NOISES {
-            println!("\n{variant}, length noise {} mm: peak pose error, mm\n", length_noise * 1e3);
+            println!("\n{variant}, {profile:?}, length noise {} mm: peak pose error, mm\n", length_noise * 1e3);
             let results = in_parallel(&crossings, |k, crossing| {
-                let experiment =
+                let mut experiment =
                     Experiment { length_noise, noise_seed: k as u64, ..crossing.experiment(revolute_motors) };
+                experiment.controller.profile = profile;
                 MODES.map(|scheme| scheme.figures(&experiment))
             });
             print_distributions(&results);
@@ -36,26 +40,6 @@ fn main() -> Result<(), std::num::ParseIntError> {
         }
     }
     Ok(())
-}
-
-/// Applies `run` to all items, in their order, on all processors.
-fn in_parallel<T: Sync, R: Send>(items: &[T], run: impl Fn(usize, &T) -> R + Sync) -> Vec<R> {
-    let next = AtomicUsize::new(0);
-    let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
-    let work = || {
-        let mut done = Vec::new();
-        loop {
-            let k = next.fetch_add(1, Ordering::Relaxed);
-            let Some(item) = items.get(k) else { return done };
-            done.push((k, run(k, item)));
-        }
-    };
-    let mut results: Vec<_> = std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-        workers.into_iter().flat_map(|worker| worker.join().expect("no run panics")).collect()
-    });
-    results.sort_unstable_by_key(|(k, _)| *k);
-    results.into_iter().map(|(_, result)| result).collect()
 }
 
 fn print_distributions(results: &[[Figures; MODES.len()]]) {

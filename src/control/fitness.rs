@@ -48,7 +48,7 @@ struct Outlook<T> {
 
 impl<T: Scalar> Outlook<T> {
     fn new(model: &PlantModel<T>, situation: &Situation<T>, ahead: &ReferencePoint<T>, tuning: &Tuning<T>) -> Self {
-        let Tuning { horizon, weight_velocity, weight_acceleration, .. } = *tuning;
+        let Tuning { horizon, weight_velocity, weight_acceleration, holding, .. } = *tuning;
         let scale = coordinate_scale(model);
         Self {
             scale,
@@ -57,7 +57,7 @@ impl<T: Scalar> Outlook<T> {
             horizon,
             weight_velocity,
             weight_acceleration,
-            holding: Holding::new(model, situation, ahead, horizon),
+            holding: Holding::new(model, situation, ahead, horizon, &holding),
         }
     }
 

@@ -29,6 +29,7 @@ pub use controller::{Controller, Diagnostics, LEAST_WORK};
 pub use damping::{Damping, Mode};
 pub use estimator::{Deviations, Estimate, Estimator};
 pub use fitness::{Fitness, fitness_of_currents};
+pub use holding::HoldingTerm;
 pub use parameters::{ControlError, ControllerParameters, Gains, SwarmParameters, Tuning};
 pub use preview::{Start, preview};
 pub(crate) use preview::{pose_errors, stacked_currents};

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::holding::HoldingTerm;
 use super::mpso::{Settings, SettingsError};
 use super::{Damping, Mode, Profile, SensorParameters};
 use crate::defaults as d;
@@ -65,6 +66,8 @@ pub struct Tuning<T = f64> {
     pub weight_velocity: T,
     /// Fitness weight of the acceleration, s4.
     pub weight_acceleration: T,
+    /// What the fitness adds for poses that three motors cannot hold.
+    pub holding: HoldingTerm<T>,
 }
 
 /// Why the controller cannot start or go on.
@@ -127,6 +130,7 @@ impl Default for Tuning {
             horizon: d::HORIZON,
             weight_velocity: d::WEIGHT_VELOCITY,
             weight_acceleration: d::WEIGHT_ACCELERATION,
+            holding: HoldingTerm::default(),
         }
     }
 }

@@ -12,9 +12,9 @@ use serde::{Deserialize, Serialize};
 use super::{descriptions, slots};
 use crate::control::mpso::{Selection, Settings};
 use crate::control::{
-    CHANNELS, Controller as Core, ControllerParameters, Damping, Diagnostics, ExternalReference, Gains, LEAST_WORK,
-    Measurement, Mode, Profile, Reference, ReferencePoint, SensorFaults, SensorParameters, Start, SwarmParameters,
-    Tuning, preview,
+    CHANNELS, Controller as Core, ControllerParameters, Damping, Diagnostics, ExternalReference, Gains, HoldingTerm,
+    LEAST_WORK, Measurement, Mode, Profile, Reference, ReferencePoint, SensorFaults, SensorParameters, Start,
+    SwarmParameters, Tuning, preview,
 };
 use crate::description::{Definition, VariableType};
 use crate::dynamics::{MechanismParameters, PlantModel};
@@ -174,6 +174,7 @@ fn tuning_from<T: Scalar>(values: &Values, real: impl Fn(usize) -> T) -> Tuning<
         horizon: real(slots.horizon),
         weight_velocity: real(slots.weight_velocity),
         weight_acceleration: real(slots.weight_acceleration),
+        holding: HoldingTerm::default(),
     }
 }
 
