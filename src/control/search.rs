@@ -22,22 +22,28 @@ enum Members {
 }
 
 /// Where the searches so far ended: the best particle of each quarter of (rho, delta_hd) at the last tick that
-/// looked there. The fitness can have a valley in each, and which one is lowest changes from tick to tick.
+/// looked there, the best first. The fitness can have a valley in each, and which one is lowest changes from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) struct Elite {
     /// Members within [0, 1]; the third is 0 with six motors.
     particles: [[f64; 3]; QUARTERS],
-    /// The best of them.
-    best: usize,
 }
 
 const QUARTERS: usize = 4;
 /// Initial individuals around the last optimum, each within half the distance of the one before, from
 /// [`FARTHEST`] on: the optimum moves little from tick to tick as a rule, and sometimes it leaps.
-const NEIGHBOURS: usize = 7;
+const NEIGHBOURS: usize = 6;
 const FARTHEST: f64 = 0.2;
-/// Initial individuals that are no random ones, at most.
-const STARTS: usize = QUARTERS + NEIGHBOURS;
+/// Whose neighbours others are, by place in the elite: the valley that is lowest next wants to be followed too.
+const OTHERS: [usize; 5] = [1, 1, 2, 2, 3];
+/// Their distances lie between these, every decade as likely.
+const OTHERS_DISTANCES: (f64, f64) = (7e-4, 0.3);
+/// Initial individuals without damped velocity, with any rho, and with a lambda_f that close to that of the best or of
+/// any of the elite: their valleys are long in rho, narrow in lambda_f.
+const UNHELD: usize = 4;
+const UNHELD_DISTANCE: f64 = 0.05;
+/// Initial individuals that are not scattered over all dampings, at most.
+const STARTS: usize = QUARTERS + NEIGHBOURS + OTHERS.len() + UNHELD;
 /// A sigma_min that small is no other than zero.
 const SMALLEST_SIGMA: f64 = 1e-12;
 
@@ -64,16 +70,19 @@ impl Search {
     ) -> (Damping<f64>, Solution<3>) {
         let Self { swarm, parameters: SwarmParameters { settings, largest } } = self;
         // the rest of the swarm is scattered over all dampings
-        let known = STARTS.min(settings.swarm_size * 2 / 3);
+        let known = STARTS.min(settings.swarm_size - 1);
         let starts = elite.starts(rng);
-        let mut least = [f64::INFINITY; QUARTERS];
+        let mut found = [(f64::INFINITY, [0.0; 3]); QUARTERS];
+        for particle in elite.particles {
+            found[quarter(&particle)].1 = particle;
+        }
         let largest_rho_hd = fitness.rho_hd(largest);
         let mut value = |z: &[f64; 3]| {
             let Shares { rho, rho_hd, lambda_f } = Shares::of(z);
             let value = fitness.of_factors(largest.rho * rho, largest_rho_hd * rho_hd, largest.lambda_f * lambda_f);
-            let quarter = Elite::quarter(z);
-            if value < least[quarter] {
-                (least[quarter], elite.particles[quarter]) = (value, *z);
+            let found = &mut found[quarter(z)];
+            if value < found.0 {
+                *found = (value, *z);
             }
             value
         };
@@ -86,39 +95,50 @@ impl Search {
             }
             Members::Three(swarm) => swarm.minimize(rng, &starts[..known], value),
         };
-        elite.best = Elite::quarter(&solution.position);
+        found.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        elite.particles = found.map(|(_, particle)| particle);
         (damping(&solution.position, largest, sigma_min), solution)
     }
 }
 
 impl Elite {
-    fn quarter(z: &[f64; 3]) -> usize {
-        usize::from(z[0] > 0.5) + 2 * usize::from(z[1] > 0.5)
-    }
-
-    /// Initial individuals: the elite, the best first, and neighbours of the best.
+    /// Initial individuals, those that matter most first.
     fn starts(&self, rng: &mut impl Rng) -> [[f64; 3]; STARTS] {
-        let best = self.particles[self.best];
+        let mut uniform = || -> f64 { StandardUniform.sample(rng) };
+        let [best, ..] = self.particles;
         let mut starts = [best; STARTS];
-        starts[..QUARTERS].copy_from_slice(&self.particles);
-        starts.swap(0, self.best);
+        let (elite, rest) = starts.split_at_mut(QUARTERS);
+        let (neighbours, rest) = rest.split_at_mut(NEIGHBOURS);
+        let (others, unheld) = rest.split_at_mut(OTHERS.len());
+        elite.copy_from_slice(&self.particles);
         let mut distance = FARTHEST;
-        for start in &mut starts[QUARTERS..] {
-            for x in start {
-                let uniform: f64 = StandardUniform.sample(rng);
-                *x += distance * (2.0 * uniform - 1.0);
-            }
+        for start in neighbours {
+            *start = start.map(|x| x + distance * (2.0 * uniform() - 1.0));
             distance *= 0.5;
+        }
+        let (nearest, farthest) = OTHERS_DISTANCES;
+        for (start, place) in others.iter_mut().zip(OTHERS) {
+            let distance = farthest * libm::pow(nearest / farthest, uniform());
+            *start = self.particles[place].map(|x| x + distance * (2.0 * uniform() - 1.0));
+        }
+        for (k, start) in unheld.iter_mut().enumerate() {
+            let near = if k % 2 == 0 { 0 } else { (uniform() * QUARTERS as f64) as usize };
+            let lambda_f = self.particles[near][2] + UNHELD_DISTANCE * (2.0 * uniform() - 1.0);
+            *start = [uniform(), 0.0, lambda_f];
         }
         starts
     }
 }
 
+/// The quarter of (rho, delta_hd) in which a particle lies.
+fn quarter(z: &[f64; 3]) -> usize {
+    usize::from(z[0] > 0.5) + 2 * usize::from(z[1] > 0.5)
+}
+
 impl Default for Elite {
     /// Before the first search: the middle of each quarter.
     fn default() -> Self {
-        let particles = [[0.25, 0.25, 0.5], [0.75, 0.25, 0.5], [0.25, 0.75, 0.5], [0.75, 0.75, 0.5]];
-        Self { particles, best: 0 }
+        Self { particles: [[0.25, 0.25, 0.5], [0.75, 0.25, 0.5], [0.25, 0.75, 0.5], [0.75, 0.75, 0.5]] }
     }
 }
 
