@@ -68,6 +68,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--tasks", nargs="+", metavar="TASK", help="keys of the tasks to run; default: all")
     parser.add_argument("--modes", nargs="+", type=int, choices=list(MODES), help="control modes; default: all")
     parser.add_argument("--baselines", type=Path, help="figures that examples/baselines.rs printed")
+    parser.add_argument("--convergence", type=Path, help="table that examples/convergence.rs printed")
     options = parser.parse_args(arguments)
     with extracted(options.dist / "Rps3Plant.fmu", options.dist / "Rps3Controller.fmu") as (plant, controller):
         chosen = [task for task in tasks(controller) if options.tasks is None or task.key in options.tasks]
@@ -81,7 +82,7 @@ def main(arguments: list[str] | None = None) -> None:
         found = baselines.only(baselines.read(options.baselines))
         results.baselines = {case: schemes for case, schemes in found.items() if case[0] in keys}
     out = options.out or options.dist / "report"
-    index = report.write(out, cases, geometry, results)
+    index = report.write(out, cases, geometry, results, options.convergence)
     for case in cases:
         print(f"\n{case.title}\n{report.markdown_table(*report.table(case, results))}")
     print(f"\n{index}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import html
 import math
 from collections.abc import Mapping
@@ -10,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rps3_study import design_study, plots, report_page
+from rps3_study import convergence, design_study, plots, report_page
 from rps3_study.couple import Run
 from rps3_study.geometry import Geometry
 from rps3_study.results import Results
@@ -54,8 +55,18 @@ PAPER_FIGURES = (
 """7 is a simulation; 9 and 10 are measured, for which runs with the sensors' noise stand in."""
 
 
-def write(directory: Path, cases: list[Case], geometry: Geometry, results: Results) -> Path:
-    """Writes the report into `directory` and returns its HTML page; `geometry` is the plant's in all runs."""
+def write(
+    directory: Path, cases: list[Case], geometry: Geometry, results: Results, searches: Path | None = None
+) -> Path:
+    """Writes the report into `directory` and returns its HTML page.
+
+    Args:
+        directory: of the report.
+        cases: runs.
+        geometry: the plant's in all runs.
+        results: figures of the runs.
+        searches: table of examples/convergence.rs.
+    """
     radius = geometry.joint_radius
     for part in ("data", "plots"):
         (directory / part).mkdir(parents=True, exist_ok=True)
@@ -71,6 +82,13 @@ def write(directory: Path, cases: list[Case], geometry: Geometry, results: Resul
             _write_csv(directory / "data" / f"{stem}.csv", run)
         for image in _draw(directory, case, radius):
             markdown += [f"![{Path(image).stem}]({image})", ""]
+    if searches is not None:
+        image = directory / "plots/convergence.svg"
+        convergence.draw(image, convergence.read(searches))
+        markdown += [f"## {convergence.TITLE}", "", "![convergence](plots/convergence.svg)", ""]
+        drawn = base64.b64encode(image.read_bytes()).decode("ascii")
+        picture = f'<img alt="{convergence.TITLE}" src="data:image/svg+xml;base64,{drawn}">'
+        tables.append(f'<div class="case"><h3>{convergence.TITLE}</h3>\n{picture}</div>')
     (directory / "report.md").write_text("\n".join(markdown), encoding="utf-8")
     index = directory / "index.html"
     index.write_text(report_page.render(cases, geometry, _INTRODUCTION, tables), encoding="utf-8")

@@ -6,6 +6,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use serde::{Deserialize, Serialize};
 
 use super::actuation::voltages;
+use super::mpso::Progress;
 use super::parameters::Tuning;
 use super::preview::{pose_errors, stacked_currents};
 use super::search::{Elite, Search};
@@ -240,6 +241,22 @@ impl Controller {
         tuning: &Tuning,
         delayed: bool,
     ) -> Result<Diagnostics, ControlError> {
+        self.tick_observed(t, measured, external, tuning, delayed, |_| {})
+    }
+
+    /// [`tick`](Self::tick) that tells `observer` how the swarm's search goes on, in mode 4.
+    ///
+    /// # Errors
+    /// As [`tick`](Self::tick).
+    pub fn tick_observed(
+        &mut self,
+        t: f64,
+        measured: &Measurement<f64>,
+        external: &ReferencePoint<f64>,
+        tuning: &Tuning,
+        delayed: bool,
+        observer: impl FnMut(&Progress),
+    ) -> Result<Diagnostics, ControlError> {
         self.memory.work = self.memory.work.saturating_add(LEAST_WORK);
         let measured = self.memory.sensors.read(measured);
         let estimate = self.memory.estimator.update(&self.model.geometry, &measured);
@@ -266,7 +283,7 @@ impl Controller {
                 let target = self.reference_at(external, t + horizon, horizon);
                 let fitness =
                     Fitness::new(&self.model, &situation, &basis, &distribution, &target, tuning, sample_time);
-                self.search(&fitness, basis.sigma_min, tuning)
+                self.search(&fitness, basis.sigma_min, tuning, observer)
             }
         };
         let rho_hd = damping.rho_hd(basis.sigma_min, sample_time);
@@ -327,9 +344,15 @@ impl Controller {
     }
 
     /// The swarm's optimum: damping, fitness, iterations.
-    fn search(&mut self, fitness: &Fitness, sigma_min: f64, tuning: &Tuning) -> (Damping<f64>, f64, usize) {
+    fn search(
+        &mut self,
+        fitness: &Fitness,
+        sigma_min: f64,
+        tuning: &Tuning,
+        observer: impl FnMut(&Progress),
+    ) -> (Damping<f64>, f64, usize) {
         let Memory { rng, elite, work, .. } = &mut self.memory;
-        let (damping, solution) = self.search.find(rng, elite, fitness, sigma_min);
+        let (damping, solution) = self.search.find(rng, elite, fitness, sigma_min, observer);
         *work = work.saturating_add(solution.evaluations as u64);
         if !solution.value.is_finite() {
             return (tuning.fixed, solution.value, solution.iterations);

@@ -4,7 +4,7 @@ use rand::Rng;
 use rand::distr::{Distribution, StandardUniform};
 use serde::{Deserialize, Serialize};
 
-use super::mpso::{Bounds, SettingsError, Solution, Swarm};
+use super::mpso::{Bounds, Progress, SettingsError, Solution, Swarm};
 use super::parameters::SwarmParameters;
 use super::{Damping, Fitness};
 
@@ -60,13 +60,15 @@ impl Search {
         Ok(Self { swarm, parameters })
     }
 
-    /// The damping of least `fitness` at `sigma_min`, starting from the `elite` of the search before.
+    /// The damping of least `fitness` at `sigma_min`, starting from the `elite` of the search before; tells `observer`
+    /// how the search goes on.
     pub fn find(
         &mut self,
         rng: &mut impl Rng,
         elite: &mut Elite,
         fitness: &Fitness,
         sigma_min: f64,
+        observer: impl FnMut(&Progress),
     ) -> (Damping<f64>, Solution<3>) {
         let Self { swarm, parameters: SwarmParameters { settings, largest } } = self;
         // the rest of the swarm is scattered over all dampings
@@ -90,10 +92,10 @@ impl Search {
             Members::Two(swarm) => {
                 let starts = starts.map(|[x, y, _]| [x, y]);
                 let Solution { position: [x, y], value, iterations, evaluations } =
-                    swarm.minimize(rng, &starts[..known], |[x, y]| value(&[*x, *y, 0.0]));
+                    swarm.minimize_observed(rng, &starts[..known], |[x, y]| value(&[*x, *y, 0.0]), observer);
                 Solution { position: [x, y, 0.0], value, iterations, evaluations }
             }
-            Members::Three(swarm) => swarm.minimize(rng, &starts[..known], value),
+            Members::Three(swarm) => swarm.minimize_observed(rng, &starts[..known], value, observer),
         };
         found.sort_by(|(a, _), (b, _)| a.total_cmp(b));
         elite.particles = found.map(|(_, particle)| particle);

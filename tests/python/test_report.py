@@ -62,16 +62,24 @@ def test_report_holds_table_plots_and_data_and_is_the_same_when_written_again(tm
         passages={case: {mode: passage(run, geometry) for mode, run in runs.items()}},
         baselines={case: {"another": Figures(3.0, 1.0, 24.0, 0.0, end_stop=True)}},
     )
-    first, second = (report.write(tmp_path / name, cases, geometry, results).parent for name in ("first", "second"))
-    files = sorted(str(path.relative_to(first).as_posix()) for path in first.rglob("*.*"))
-    assert {"index.html", "report.md", "data/smooth-six-motors-drac.csv", "plots/smooth-six-motors-damping.svg"} <= set(
-        files
+    searches = tmp_path / "convergence.csv"
+    searches.write_text(
+        "motors,iteration,searching,within_1_percent,median_ratio,ninety_ratio,ninety_nine_ratio\n"
+        "6,0,1,0.5,1.1,1.2,3\n6,1,0.5,1,1,1,1\n3,0,1,0.5,1.1,1.2,3\n3,1,0.5,1,1,1,1\n"
     )
+    first, second = (
+        report.write(tmp_path / name, cases, geometry, results, searches).parent for name in ("first", "second")
+    )
+    files = sorted(str(path.relative_to(first).as_posix()) for path in first.rglob("*.*"))
+    expected = ["data/smooth-six-motors-drac.csv", "plots/smooth-six-motors-damping.svg", "plots/convergence.svg"]
+    assert {"index.html", "report.md", *expected} <= set(files)
     for name in files:
         assert (first / name).read_bytes() == (second / name).read_bytes(), name
     text = (first / "report.md").read_text()
     assert "| DRAC | 2 | 1.41 | 12 | 1 | 0.93 |  |" in text
     assert "ended early: no \\| such mode" in text
+    assert "![convergence](plots/convergence.svg)" in text
+    assert "data:image/svg+xml;base64," in (first / "index.html").read_text()
     assert "| another | 3 | 1 | 24 | 0 |  | reaches an end stop |" in text
     assert Results.read(first / "results.json").baselines == results.baselines
     data = np.genfromtxt(first / "data" / "smooth-six-motors-drac.csv", delimiter=",", names=True, deletechars="")
