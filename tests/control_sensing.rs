@@ -117,53 +117,71 @@ fn filter_averages_noise_and_does_not_lag() {
     assert!((filtered / fitted / expected - 1.0).abs() < 0.12, "{} {expected}", filtered / fitted);
 }
 
-#[test]
-fn static_errors_of_lengths_are_found_as_well_as_angles_tell_them() {
-    // At rest a batch of n readings is as good as one of their mean, in which a length is uncertain by its noise and its
-    // static error together: the estimate's covariance is known.
+const WITH_STATIC_ERRORS: Deviations = Deviations { length_bias: 2e-3, ..DEVIATIONS };
+const RUNS: u32 = 2000;
+/// 4 relative standard deviations of the mean of [`RUNS`] chi-squares of 3 degrees of freedom.
+const BOUND: f64 = 0.074;
+
+/// Mean square of the estimate's error after `readings` at rest, normalized by `information` per degree of freedom: 1 if that
+/// is what the estimate has. Static errors are drawn anew in each run.
+fn normalized_square(filter_time: f64, readings: u32, information: &Matrix3<f64>) -> f64 {
     let model = model();
     let truth = exact(&model, VIA, [0.0; 3]);
-    let deviations = Deviations { length_bias: 2e-3, ..DEVIATIONS };
-    let (readings, runs) = (100, 2000);
-    let n = f64::from(readings);
-    let length_variance = deviations.length.powi(2) / n + deviations.length_bias.powi(2);
-    let angle_variance = deviations.angle.powi(2) / n;
-    let mut information = Matrix3::zeros();
-    for limb in Limb::all(&model.geometry, &Pose::new(&model.geometry, &VIA.into())) {
-        information += limb.length_gradient * limb.length_gradient.transpose() / length_variance
-            + limb.angle_gradient * limb.angle_gradient.transpose() / angle_variance;
-    }
-    let covariance = information.try_inverse().expect("angles see every motion");
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(3);
     let mut gauss = |deviation: f64| {
         let z: f64 = StandardNormal.sample(&mut rng);
         deviation * z
     };
-    let (mut squares, mut normalized) = (Vector3::zeros(), 0.0);
-    for _ in 0..runs {
-        let biases = [(); 3].map(|()| gauss(deviations.length_bias));
-        // a filter so slow that no reading fades
-        let mut estimator = Estimator::new(&deviations, 1e9, 1e-3, VIA);
+    let mut sum = 0.0;
+    for _ in 0..RUNS {
+        let biases = [(); 3].map(|()| gauss(WITH_STATIC_ERRORS.length_bias));
+        let mut estimator = Estimator::new(&WITH_STATIC_ERRORS, filter_time, 1e-3, VIA);
         let mut error = Vector3::zeros();
         for _ in 0..readings {
             let mut noisy = truth;
             for (i, bias) in biases.iter().enumerate() {
-                noisy.lengths[i] += bias + gauss(deviations.length);
-                noisy.angles[i] += gauss(deviations.angle);
+                noisy.lengths[i] += bias + gauss(DEVIATIONS.length);
+                noisy.angles[i] += gauss(DEVIATIONS.angle);
             }
             error = estimator.update(&model.geometry, &noisy).s - Vector3::from(VIA);
         }
-        squares += error.component_mul(&error) / f64::from(runs);
-        normalized += error.dot(&(information * error)) / f64::from(runs);
+        sum += error.dot(&(information * error));
     }
-    // 4 relative standard deviations of a variance, and of a mean of chi-squares of 3 degrees of freedom, beside
-    // curvature, which the formula does not know
-    let bound = 4.0 * (2.0 / f64::from(runs)).sqrt();
-    for i in 0..3 {
-        let ratio = squares[i] / covariance[(i, i)];
-        assert!((ratio - 1.0).abs() < bound, "{i}: {ratio}");
-    }
-    assert!((normalized / 3.0 - 1.0).abs() < bound / 3.0_f64.sqrt(), "{normalized}");
+    sum / f64::from(3 * RUNS)
+}
+
+/// Gradients of lengths and angles at the singular pose, in columns.
+fn gradients() -> [Matrix3<f64>; 2] {
+    let geometry = model().geometry;
+    let limbs = Limb::all(&geometry, &Pose::new(&geometry, &VIA.into()));
+    [limbs.map(|limb| limb.length_gradient), limbs.map(|limb| limb.angle_gradient)].map(|g| Matrix3::from_columns(&g))
+}
+
+#[test]
+fn static_errors_of_lengths_are_found_as_well_as_angles_tell_them() {
+    let [lengths, angles] = gradients();
+    let n = 100;
+    // Where no reading fades, n at rest are as good as one of their mean, in which a length is uncertain by its noise and
+    // its static error together.
+    let mean = |deviation: f64| deviation.powi(2) / f64::from(n);
+    let length_variance = mean(DEVIATIONS.length) + WITH_STATIC_ERRORS.length_bias.powi(2);
+    let batch = lengths * lengths.transpose() / length_variance + angles * angles.transpose() / mean(DEVIATIONS.angle);
+    let square = normalized_square(1e9, n, &batch);
+    assert!((square - 1.0).abs() < BOUND, "{square}");
+    // Without a filter there are n unknown poses. Each reading tells of the static errors what is left when its pose is
+    // eliminated, and the last pose has what is left when they are.
+    let [length, angle] = [DEVIATIONS.length, DEVIATIONS.angle].map(|deviation| deviation.powi(-2));
+    let pose = lengths * lengths.transpose() * length + angles * angles.transpose() * angle;
+    let shared = lengths * length;
+    let told = Matrix3::from_diagonal_element(length) - shared.tr_mul(&(pose.try_inverse().unwrap() * shared));
+    let errors =
+        Matrix3::from_diagonal_element(WITH_STATIC_ERRORS.length_bias.powi(-2) + length) + told * f64::from(n - 1);
+    let last = pose - shared * errors.try_inverse().unwrap() * shared.transpose();
+    let square = normalized_square(0.0, n, &last);
+    assert!((square - 1.0).abs() < BOUND, "{square}");
+    // A filter in between lies in between.
+    let (lower, upper) = (normalized_square(0.05, n, &batch), normalized_square(0.05, n, &last));
+    assert!(lower > 1.0 - BOUND && upper < 1.0 + BOUND, "{lower} {upper}");
 }
 
 #[test]

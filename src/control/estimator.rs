@@ -5,8 +5,8 @@
 //!
 //! Lengths may be off by a static error each, which angles do not have. It is estimated along with the pose: the fits
 //! of all ticks are one least-squares problem in the present pose and three constants, of which a tick keeps the
-//! information matrix. What it says of the pose fades with the filter's time constant, for rates carry a pose on only so
-//! long; what it says of the constants stays.
+//! information matrix. What it says of the pose, the constants being what they are, fades with the filter's time
+//! constant, for rates carry a pose on only so long; what it says of the constants alone stays.
 
 use std::cmp::Ordering;
 
@@ -52,10 +52,10 @@ pub struct Estimator {
     s_dot: [f64; 3],
     /// Static errors of the lengths, m.
     biases: [f64; 3],
-    /// Information on (pose, static errors): its blocks pose-pose, pose-errors and the diagonal errors-errors.
+    /// Information on (pose, static errors) that the next tick begins with: its blocks pose-pose, pose-errors, errors-errors.
     pose_information: [[f64; 3]; 3],
     shared_information: [[f64; 3]; 3],
-    bias_information: [f64; 3],
+    bias_information: [[f64; 3]; 3],
 }
 
 /// A least-squares fit and the information that it rests on.
@@ -65,7 +65,7 @@ struct Fit<T> {
     biases: Vector3<T>,
     pose_information: Matrix3<T>,
     shared_information: Matrix3<T>,
-    bias_information: Vector3<T>,
+    bias_information: Matrix3<f64>,
 }
 
 /// Newton's iterations at a tick. From the last tick's pose two reach rounding, from the first
@@ -93,7 +93,7 @@ impl Estimator {
             biases: [0.0; 3],
             pose_information: [[0.0; 3]; 3],
             shared_information: [[0.0; 3]; 3],
-            bias_information: [information(deviations.length_bias); 3],
+            bias_information: Matrix3::from_diagonal_element(information(deviations.length_bias)).into(),
         }
     }
 
@@ -103,9 +103,14 @@ impl Estimator {
         self.s = fit.estimate.s.into();
         self.s_dot = fit.estimate.s_dot.into();
         self.biases = fit.biases.into();
-        self.pose_information = fit.pose_information.into();
-        self.shared_information = fit.shared_information.into();
-        self.bias_information = fit.bias_information.into();
+        // The pose given the static errors is known less well at the next tick, and they alone as well as now: that
+        // leaves their marginal information errors-errors - errors-pose pose-pose^-1 pose-errors as it is.
+        let Fit { pose_information, shared_information, bias_information, .. } = fit;
+        let of_pose = pose_information.try_inverse().unwrap_or_else(Matrix3::zeros) * shared_information;
+        self.pose_information = (pose_information * self.retention).into();
+        self.shared_information = (shared_information * self.retention).into();
+        self.bias_information =
+            (bias_information - shared_information.tr_mul(&of_pose) * (1.0 - self.retention)).into();
         fit.estimate
     }
 
@@ -132,13 +137,14 @@ impl Estimator {
         let [length_information, angle_information] =
             [self.length_information, self.angle_information].map(constant::<T>);
         let half_sample = constant::<T>(0.5 * self.sample_time);
-        let [last, last_rate, last_biases, known_bias] =
-            [self.s, self.s_dot, self.biases, self.bias_information].map(|v| Vector3::from(v).map(constant::<T>));
-        let known_pose = Matrix3::from(self.pose_information).map(|i| constant::<T>(i * self.retention));
-        let retained = self.retention.sqrt();
-        let known_shared = Matrix3::from(self.shared_information).map(|i| constant::<T>(i * retained));
-        let bias_information = known_bias.add_scalar(length_information);
-        let bias_variance = bias_information.map(T::recip);
+        let [last, last_rate, last_biases] =
+            [self.s, self.s_dot, self.biases].map(|v| Vector3::from(v).map(constant::<T>));
+        let [known_pose, known_shared, known_bias] =
+            [self.pose_information, self.shared_information, self.bias_information].map(Matrix3::from);
+        let bias_information = known_bias + Matrix3::from_diagonal_element(self.length_information);
+        let bias_variance = bias_information.try_inverse().unwrap_or_else(Matrix3::zeros);
+        let [known_pose, known_shared, known_bias, bias_variance] =
+            [known_pose, known_shared, known_bias, bias_variance].map(|m| m.map(constant::<T>));
 
         let (mut s, mut biases, mut iteration) = (*guess, last_biases, 0);
         loop {
@@ -160,16 +166,15 @@ impl Estimator {
             let residual = length_weights * length_error + angle_weights * angle_error
                 - known_pose * off
                 - known_shared * bias_off;
-            let bias_residual =
-                length_error * length_information - known_shared.tr_mul(&off) - known_bias.component_mul(&bias_off);
+            let bias_residual = length_error * length_information - known_shared.tr_mul(&off) - known_bias * bias_off;
 
-            let eliminated = shared_information * Matrix3::from_diagonal(&bias_variance);
+            let eliminated = shared_information * bias_variance;
             let step = solve_positive_definite(
                 &(pose_information - eliminated * shared_information.transpose()),
                 &(residual - eliminated * bias_residual),
             );
             s += step;
-            biases += bias_variance.component_mul(&(bias_residual - shared_information.tr_mul(&step)));
+            biases += bias_variance * (bias_residual - shared_information.tr_mul(&step));
             iteration += 1;
             // (a NaN ends it too)
             let converged = step.amax().partial_cmp(&constant(CONVERGED)) != Some(Ordering::Greater);
