@@ -119,7 +119,9 @@ fn three_motors_find_the_dense_grids_optimum_within_1_percent_in_99_percent_of_t
     let (moving, resting): (Vec<_>, Vec<_>) = ratios.iter().partition(|(time, _)| *time < d::MOVE_TIME);
     let shares = [&ratios, &moving, &resting].map(|ratios| share_within(ratios));
     println!("within 1 %: {} of {} ticks, {} in motion, {} at rest", shares[0], ratios.len(), shares[1], shares[2]);
-    assert!(shares[0] >= 0.99 && shares[1] >= 0.99, "{shares:?}");
+    let worst = ratios.iter().map(|(_, ratio)| *ratio).fold(0.0, f64::max);
+    println!("largest ratio {worst}");
+    assert!(shares[0] >= 0.99 && shares[1] >= 0.99 && shares[2] >= 0.97 && worst < 5.0, "{shares:?} {worst}");
 }
 
 /// Of the swarm and the sensors, each a run of its own.

@@ -25,7 +25,7 @@ enum Members {
 /// looked there, the best first. The fitness can have a valley in each, and which one is lowest changes from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) struct Elite {
-    /// Members within [0, 1]; the third is 0 with six motors.
+    /// Members within [0, 1]; the third is not used with six motors.
     particles: [[f64; 3]; QUARTERS],
 }
 
@@ -71,7 +71,7 @@ impl Search {
         observer: impl FnMut(&Progress),
     ) -> (Damping<f64>, Solution<3>) {
         let Self { swarm, parameters: SwarmParameters { settings, largest } } = self;
-        // the rest of the swarm is scattered over all dampings
+        // the rest, one at least, is scattered over all dampings
         let known = STARTS.min(settings.swarm_size - 1);
         let starts = elite.starts(rng);
         let mut found = [(f64::INFINITY, [0.0; 3]); QUARTERS];

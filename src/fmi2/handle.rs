@@ -48,8 +48,8 @@ impl<M: Model> Handle<M> {
         if handle.is_null() || !handle.is_aligned() {
             return None;
         }
-        // SAFETY: handles of all libraries begin with the same two fields, those of this library with the same
-        // three, and each is read only if what stands before it is right.
+        // SAFETY: handles of all libraries begin with a mark and a pointer, those of this library with the same
+        // three fields, and each is read only if what stands before it is right.
         unsafe {
             let ours = (*handle).magic == MAGIC
                 && std::ptr::eq((*handle).library, &raw const LIBRARY)

@@ -110,7 +110,8 @@ pub trait Model: Clone + Serialize + DeserializeOwned + Send + 'static {
     fn derivatives(&self, values: &Values, time: f64, derivatives: &mut [f64]) -> ModelResult;
 
     /// Whether nothing happens up to `to`, seconds: [`Model::step`] would change neither model nor values. The layer then
-    /// spares itself the copy of both from which it restores a step that fails.
+    /// spares itself the copy of both from which it restores a step that fails; inputs set before stay pending for
+    /// [`Model::update`].
     fn idle_until(&self, _to: f64) -> bool {
         false
     }

@@ -156,8 +156,8 @@ def test_fmpy_sees_no_growth(fmu: Fmu, is_long: bool) -> None:
     heap, resident = map(int, output.split())
     print(f"{count} cycles in FMPy: heap {heap:+} bytes, resident {resident:+} bytes")
     # the libraries take all their memory from this heap, Python only what is larger than its own heap's blocks; an
-    # instance that stays takes more than 10 kB
-    assert heap < count
+    # instance that stays takes more than 10 kB, and a chance object of Python's no more than that in all
+    assert heap < 8 * 1024 + count
 
 
 def test_memcheck_finds_no_error_of_the_library_in_fmpy(fmu: Fmu, valgrind: str, tmp_path: Path, is_long: bool) -> None:

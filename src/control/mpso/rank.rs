@@ -4,7 +4,7 @@
 //! [`COUNTING_MAX`] individuals it is found by just counting them: all pairs are compared without
 //! a branch, several a cycle, which beats sorting. Larger populations are sorted.
 //!
-//! Keys are single precision, which makes counting twice as fast: individuals that differ by less than
+//! Keys are single precision, of which a vector register holds twice as many: individuals that differ by less than
 //! 1e-7 of their distance from the best, in value or in place, are equals.
 
 /// Keys compared at once; buffers are padded to a multiple of it.

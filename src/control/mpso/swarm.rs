@@ -68,7 +68,8 @@ impl<const D: usize> Swarm<D> {
     ///
     /// The initial swarm begins with `starts`, clamped to the bounds, as far as there is room; those
     /// with a member that is not finite are left out. The others are scattered over the box. Values of
-    /// the objective that are not finite count as worst.
+    /// the objective that are not finite count as worst, and so do, in the ranking, those that exceed the best by more than
+    /// single precision holds (3e38).
     pub fn minimize(
         &mut self,
         rng: &mut impl Rng,
