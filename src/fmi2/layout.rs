@@ -87,10 +87,8 @@ impl Table {
 
     /// Copies the `values` behind `references` one by one; the error is a reference behind which there is none.
     pub fn gather(&self, values: &[f64], references: &[u32], out: &mut [f64]) -> Result<(), u32> {
-        let places = &self.places[..];
         for (&reference, out) in references.iter().zip(out) {
-            let place = places.get(reference as usize).filter(|place| place.run > 0).ok_or(reference)?;
-            *out = values[place.slot as usize];
+            *out = values[self.slot(reference).ok_or(reference)?];
         }
         Ok(())
     }

@@ -7,9 +7,10 @@
 //! `co_simulation`.
 //!
 //! A *refused* call (wrong order, arguments or data) returns `fmi2Error` and changes nothing of the
-//! instance, the mode included; what a refused Get has put into its result array means nothing. A *failed* computation returns `fmi2Error` and leaves the instance in the
-//! standard's state `error`, from which `fmi2Reset`, `fmi2SetFMUstate` and `fmi2FreeInstance` lead
-//! out (section 2.1.3). A panic returns `fmi2Fatal`.
+//! instance, the mode included; what a refused Get has put into its result array means nothing. A
+//! *failed* computation returns `fmi2Error` and leaves the instance in the standard's state `error`,
+//! from which `fmi2Reset`, `fmi2SetFMUstate` and `fmi2FreeInstance` lead out (section 2.1.3). A panic
+//! returns `fmi2Fatal`.
 
 pub mod api;
 mod boundary;

@@ -213,9 +213,7 @@ impl<M: Model> Instance<M> {
     pub(super) fn no_strings(&self, references: &[ValueReference]) -> CallResult {
         match references.first() {
             None => Ok(()),
-            Some(reference) => {
-                Err(CallError::Refused(format!("there is no String variable with value reference {reference}")))
-            }
+            Some(&reference) => Err(no_such_variable("String", reference)),
         }
     }
 }
