@@ -8,6 +8,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include "fmi2Functions.h"
+#include "no_integers.h"
 
 enum { VARIABLES = 256 };
 enum { INSTANTIATED = 1, INITIALIZATION = 2, STEP_COMPLETE = 4 };
@@ -107,12 +108,6 @@ fmi2Status fmi2SetReal(fmi2Component component, const fmi2ValueReference referen
   }
   for (size_t i = 0; i < count; ++i) instance->values[references[i]] = values[i];
   return leave(component, fmi2OK);
-}
-
-fmi2Status fmi2SetInteger(fmi2Component component, const fmi2ValueReference references[], size_t count,
-                          const fmi2Integer values[]) {
-  (void)component, (void)references, (void)count, (void)values;
-  return fmi2Error;
 }
 
 fmi2Status fmi2DoStep(fmi2Component component, fmi2Real time, fmi2Real step, fmi2Boolean no_set_state) {

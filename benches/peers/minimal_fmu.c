@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 #include "fmi2Functions.h"
+#include "no_integers.h"
 
 enum { VARIABLES = 256 };
 
@@ -47,12 +48,6 @@ fmi2Status fmi2SetReal(fmi2Component component, const fmi2ValueReference referen
     instance->values[references[i]] = values[i];
   }
   return fmi2OK;
-}
-
-fmi2Status fmi2SetInteger(fmi2Component component, const fmi2ValueReference references[], size_t count,
-                          const fmi2Integer values[]) {
-  (void)component, (void)references, (void)count, (void)values;
-  return fmi2Error;
 }
 
 fmi2Status fmi2DoStep(fmi2Component component, fmi2Real time, fmi2Real step, fmi2Boolean no_set_state) {

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
+
+from rps3_study import plots
 
 TITLE = "Convergence of the swarm within a tick, default crossing"
 SMALLEST = 1e-6
@@ -43,6 +44,4 @@ def draw(path: Path, table: np.ndarray) -> None:
             axis.legend(fontsize="small")
     axes[0, 0].set_ylabel("excess of the best fitness over the last, at most")
     axes[1, 0].set_ylabel("ticks, %")
-    # fixed identifiers and no date: equal searches give equal files
-    with matplotlib.rc_context({"svg.hashsalt": "rps3"}):
-        figure.savefig(path, metadata={"Date": None})
+    plots.save(figure, path)

@@ -159,6 +159,10 @@ def draw(path: Path, title: str, runs: Mapping[str, Run], panels: list[Panel], c
     seen = {label: handle for axis in axes for handle, label in zip(*axis.get_legend_handles_labels(), strict=True)}
     handles = {label: seen[label] for label in ("reference", *STYLES) if label in seen}
     figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(STYLES) + 1, fontsize="small")
-    # fixed identifiers and no date: equal runs give equal files
+    save(figure, path)
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Writes an SVG file with fixed identifiers and no date: equal figures give equal files."""
     with matplotlib.rc_context({"svg.hashsalt": "rps3"}):
         figure.savefig(path, metadata={"Date": None})

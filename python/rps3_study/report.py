@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import html
 import math
 from collections.abc import Mapping
@@ -13,6 +12,7 @@ import numpy as np
 
 from rps3_study import convergence, design_study, plots, report_page
 from rps3_study.couple import Run
+from rps3_study.data_url import data_url
 from rps3_study.geometry import Geometry
 from rps3_study.results import Results
 from rps3_study.tasks import Task
@@ -86,8 +86,8 @@ def write(
         image = directory / "plots/convergence.svg"
         convergence.draw(image, convergence.read(searches))
         markdown += [f"## {convergence.TITLE}", "", "![convergence](plots/convergence.svg)", ""]
-        drawn = base64.b64encode(image.read_bytes()).decode("ascii")
-        picture = f'<img alt="{convergence.TITLE}" src="data:image/svg+xml;base64,{drawn}">'
+        source = data_url("image/svg+xml", image.read_text(encoding="utf-8"))
+        picture = f'<img alt="{convergence.TITLE}" src="{source}">'
         tables.append(f'<div class="case"><h3>{convergence.TITLE}</h3>\n{picture}</div>')
     (directory / "report.md").write_text("\n".join(markdown), encoding="utf-8")
     index = directory / "index.html"

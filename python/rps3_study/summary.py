@@ -7,12 +7,12 @@ import math
 from collections.abc import Iterator
 from pathlib import Path
 
-import matplotlib
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from rps3_study import plots
 from rps3_study.montecarlo import DEVIATIONS
 from rps3_study.records import RunDirectory
 from rps3_study.study import CRASHED, FAILED, FINISHED, Study
@@ -136,10 +136,8 @@ def draw(table: pd.DataFrame, study: Study, bound: float, directory: Path) -> li
         figures["influence"] = _influence(finished)
     if study.axes:
         figures["sweep"] = _sweep(finished, study)
-    # fixed identifiers and no date: equal runs give equal files
-    with matplotlib.rc_context({"svg.hashsalt": "rps3"}):
-        for name, figure in figures.items():
-            figure.savefig(directory / f"{name}.svg", metadata={"Date": None})
+    for name, figure in figures.items():
+        plots.save(figure, directory / f"{name}.svg")
     return list(figures)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import html
 from collections.abc import Mapping, Sequence
 from importlib import resources
@@ -10,6 +9,7 @@ from string import Template
 
 from lxml import etree
 
+from rps3_study.data_url import data_url
 from rps3_study.fmu import Fmu
 from rps3_study.fmu_documentation import equations, licenses, variables
 from rps3_study.fmu_documentation.licenses import Crate
@@ -49,8 +49,7 @@ def _asset(name: str) -> str:
 
 def _image(svg: str, caption: str) -> str:
     """An image of its own, so that the identifiers in several SVGs cannot meet."""
-    data = base64.b64encode(svg.encode()).decode("ascii")
-    return f'<img src="data:image/svg+xml;base64,{data}" alt="{html.escape(caption)}">'
+    return f'<img src="{data_url("image/svg+xml", svg)}" alt="{html.escape(caption)}">'
 
 
 def _capabilities(fmu: Fmu) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import html
 import json
 from collections.abc import Sequence
@@ -10,6 +9,7 @@ from importlib import resources
 from string import Template
 from typing import TYPE_CHECKING
 
+from rps3_study.data_url import data_url
 from rps3_study.geometry import Geometry
 from rps3_study.report_page import libraries
 from rps3_study.report_page.data import payload
@@ -31,7 +31,7 @@ def render(cases: Sequence[Case], geometry: Geometry, introduction: str, tables:
     """
     three, plotly = libraries.three(), libraries.plotly()
     modules = {"three": three.code} | {f"rps3/{name}": _asset(f"{name}.js") for name in _MODULES}
-    imports = {name: _data_url("text/javascript", code) for name, code in modules.items()}
+    imports = {name: data_url("text/javascript", code) for name, code in modules.items()}
     notices = [f"{lib.name} {lib.version}: {lib.license} (From the package {lib.source}.)" for lib in (three, plotly)]
     return Template(_asset("page.html")).substitute(
         style=_asset("page.css"),
@@ -47,10 +47,6 @@ def render(cases: Sequence[Case], geometry: Geometry, introduction: str, tables:
 
 def _asset(name: str) -> str:
     return resources.files(__package__).joinpath("assets", name).read_text(encoding="utf-8")
-
-
-def _data_url(kind: str, text: str) -> str:
-    return f"data:{kind};base64,{base64.b64encode(text.encode()).decode('ascii')}"
 
 
 def _script(text: str) -> str:
