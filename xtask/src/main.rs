@@ -10,6 +10,7 @@ mod command;
 mod demo;
 mod describe;
 mod documentation;
+mod example;
 mod fmu;
 mod fuzz;
 mod instructions;
