@@ -57,8 +57,7 @@ fn controller(c: &mut Criterion) {
             let parameters = ControllerParameters { mechanism: plant.mechanism, ..ControllerParameters::default() };
             let model = PlantModel::new(&plant);
             let measured = measure(&model, &state(), &inputs());
-            let zero = Vector3::zeros();
-            let external = ReferencePoint { position: zero, rate: zero, acceleration: zero };
+            let external = ReferencePoint::default();
             let tuning = Tuning { mode, ..Tuning::default() };
             let mut controller = Controller::new(parameters).unwrap();
             c.bench_function(&format!("controller/tick in {mode_name}, {name}"), |b| {

@@ -5,7 +5,6 @@
 
 use std::io::{BufWriter, Write};
 
-use nalgebra::Vector3;
 use rps3::control::{Controller, ReferencePoint};
 use rps3::coupling::Experiment;
 use rps3::study::Crossing;
@@ -42,8 +41,7 @@ fn ratio(search: &Search, iteration: usize) -> f64 {
 /// The searches of a run, one a tick.
 fn searches(experiment: &Experiment) -> anyhow::Result<Vec<Search>> {
     let mut controller = Controller::new(experiment.controller)?;
-    let zero = Vector3::zeros();
-    let external = ReferencePoint { position: zero, rate: zero, acceleration: zero };
+    let external = ReferencePoint::default();
     let mut searches = Vec::new();
     experiment.run_with(
         |t, measured| {

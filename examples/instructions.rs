@@ -43,8 +43,7 @@ fn controller_tick(
     measured: &Measurement<f64>,
     tuning: &Tuning,
 ) -> Result<Diagnostics, Box<dyn std::error::Error>> {
-    let zero = Vector3::zeros();
-    let external = ReferencePoint { position: zero, rate: zero, acceleration: zero };
+    let external = ReferencePoint::default();
     Ok(controller.tick(t, measured, &external, tuning, true)?)
 }
 

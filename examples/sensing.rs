@@ -62,8 +62,7 @@ fn static_errors(rng: &mut impl Rng, largest: f64) -> Vector3<f64> {
 fn peaks(experiment: &Experiment, unknown: &Vector3<f64>) -> [f64; 4] {
     let r_b = PlantModel::<f64>::without_stops(&experiment.plant.mechanism).geometry.joint_radius;
     let mut controller = Controller::new(experiment.controller).expect("parameters that make sense");
-    let zero = Vector3::zeros();
-    let external = ReferencePoint { position: zero, rate: zero, acceleration: zero };
+    let external = ReferencePoint::default();
     let mut peaks = [0.0_f64; 4];
     let outcome = experiment.run_with(
         |t, measured| {
@@ -72,9 +71,7 @@ fn peaks(experiment: &Experiment, unknown: &Vector3<f64>) -> [f64; 4] {
             controller.tick(t, &measured, &external, &experiment.tuning, true)
         },
         |record| {
-            let s = Vector3::new(record.state[0], record.state[1], record.state[2]);
-            let estimated = (record.diagnostics.estimate - s).component_mul(&Vector3::new(1.0, r_b, r_b)).amax();
-            let pose = record.pose_error(r_b);
+            let (estimated, pose) = (record.estimate_error(r_b), record.pose_error(r_b));
             peaks[0] = peaks[0].max(estimated);
             if record.time >= SETTLED {
                 peaks[1] = peaks[1].max(estimated);

@@ -6,7 +6,6 @@
 
 use std::time::Instant;
 
-use nalgebra::Vector3;
 use rps3::control::{Controller, Mode, ReferencePoint, Tuning};
 use rps3::study::{Crossing, Distribution};
 
@@ -49,8 +48,7 @@ fn main() -> anyhow::Result<()> {
 /// Times of the ticks of a run, us.
 fn tick_times(experiment: &rps3::coupling::Experiment) -> anyhow::Result<Vec<f64>> {
     let mut controller = Controller::new(experiment.controller)?;
-    let zero = Vector3::zeros();
-    let external = ReferencePoint { position: zero, rate: zero, acceleration: zero };
+    let external = ReferencePoint::default();
     let mut times = Vec::new();
     experiment.run_with(
         |t, measured| {

@@ -81,8 +81,16 @@ pub enum RunError {
 impl Record {
     /// The largest component of (heave, r_b tilt_x, r_b tilt_y) errors, m.
     pub fn pose_error(&self, joint_radius: f64) -> f64 {
-        let reference = self.diagnostics.reference;
-        let error = Vector3::new(self.state[0], self.state[1], self.state[2]) - reference;
+        self.distance_from(&self.diagnostics.reference, joint_radius)
+    }
+
+    /// The same of the controller's estimate of the pose.
+    pub fn estimate_error(&self, joint_radius: f64) -> f64 {
+        self.distance_from(&self.diagnostics.estimate, joint_radius)
+    }
+
+    fn distance_from(&self, s: &Vector3<f64>, joint_radius: f64) -> f64 {
+        let error = Vector3::new(self.state[0], self.state[1], self.state[2]) - s;
         error.x.abs().max(joint_radius * error.y.abs()).max(joint_radius * error.z.abs())
     }
 }
@@ -109,8 +117,7 @@ impl Experiment {
     pub fn run(&self, observe: impl FnMut(&Record)) -> Result<(), RunError> {
         let mut controller =
             Controller::new(self.controller).map_err(|error| RunError::Control { time: 0.0, error })?;
-        let external =
-            ReferencePoint { position: Vector3::zeros(), rate: Vector3::zeros(), acceleration: Vector3::zeros() };
+        let external = ReferencePoint::default();
         let tick = |t: f64, measured: &Measurement<f64>| controller.tick(t, measured, &external, &self.tuning, true);
         self.run_with(tick, observe)
     }

@@ -53,11 +53,9 @@ fn estimate_is_unbiased_and_as_precise_as_least_squares_can_be() {
         deviation * z
     };
     // At a direct singularity on purpose: lengths alone would leave one direction open.
-    let mut information = Matrix3::zeros();
-    for limb in Limb::all(&model.geometry, &Pose::new(&model.geometry, &VIA.into())) {
-        let (length, angle) = (limb.length_gradient / DEVIATIONS.length, limb.angle_gradient / DEVIATIONS.angle);
-        information += length * length.transpose() + angle * angle.transpose();
-    }
+    let [lengths, angles] = gradients();
+    let information = lengths * lengths.transpose() / DEVIATIONS.length.powi(2)
+        + angles * angles.transpose() / DEVIATIONS.angle.powi(2);
     let covariance = information.try_inverse().expect("six sensors see every motion");
     let n = 20_000.0;
     let (mut sum, mut squares) = (Vector3::zeros(), Matrix3::zeros());
@@ -67,7 +65,7 @@ fn estimate_is_unbiased_and_as_precise_as_least_squares_can_be() {
             noisy.lengths[i] += gauss(DEVIATIONS.length);
             noisy.angles[i] += gauss(DEVIATIONS.angle);
         }
-        let error = estimator.fit(&model.geometry, &noisy, &VIA.into(), false).s - Vector3::from(VIA);
+        let error = estimator.fit(&model.geometry, &noisy, &VIA.into(), false).estimate.s - Vector3::from(VIA);
         sum += error;
         squares += error * error.transpose();
     }
@@ -108,7 +106,7 @@ fn filter_averages_noise_and_does_not_lag() {
         let estimate = estimator.update(&model.geometry, &noisy);
         if k > 1000 {
             filtered += (estimate.s.x - VIA[0]).powi(2);
-            fitted += (fresh.fit(&model.geometry, &noisy, &VIA.into(), false).s.x - VIA[0]).powi(2);
+            fitted += (fresh.fit(&model.geometry, &noisy, &VIA.into(), false).estimate.s.x - VIA[0]).powi(2);
         }
     }
     let gain = 1.0 - (-sample_time / filter_time).exp();

@@ -136,8 +136,7 @@ fn crossing(spoil: impl Fn(f64, &mut Measurement<f64>)) -> (f64, Option<f64>, Op
 /// The same of any `experiment`.
 fn coupled(experiment: &Experiment, spoil: impl Fn(f64, &mut Measurement<f64>)) -> (f64, Option<f64>, Option<f64>) {
     let mut controller = Controller::new(experiment.controller).unwrap();
-    let nothing = nalgebra::Vector3::zeros();
-    let external = ReferencePoint { position: nothing, rate: nothing, acceleration: nothing };
+    let external = ReferencePoint::default();
     let (mut fault, mut cut_off, mut error) = (None, None, 0.0_f64);
     let mut last = None;
     let tick = |t: f64, measured: &Measurement<f64>| {

@@ -166,8 +166,8 @@ impl Controller {
         }
         let estimator = &self.memory.estimator;
         let waypoint = Vector3::from(self.parameters.waypoints[0]);
-        let near = estimator.fit(&self.model.geometry, &reading, &waypoint, false);
-        (read, estimator.fit(geometry, &read, &near.s.map(T::from), true))
+        let near = estimator.fit(&self.model.geometry, &reading, &waypoint, false).estimate;
+        (read, estimator.fit(geometry, &read, &near.s.map(T::from), true).estimate)
     }
 
     /// Parameters in force.

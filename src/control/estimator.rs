@@ -60,8 +60,9 @@ pub struct Estimator {
 
 /// A least-squares fit and the information that it rests on.
 #[derive(Debug, Clone, Copy)]
-struct Fit<T> {
-    estimate: Estimate<T>,
+pub struct Fit<T> {
+    /// Pose and rates.
+    pub estimate: Estimate<T>,
     biases: Vector3<T>,
     pose_information: Matrix3<T>,
     shared_information: Matrix3<T>,
@@ -99,7 +100,7 @@ impl Estimator {
 
     /// The estimate at a tick; remembers it.
     pub fn update(&mut self, geometry: &Geometry<f64>, measured: &Measurement<f64>) -> Estimate<f64> {
-        let fit = self.fit_all(geometry, measured, &self.s.into(), false);
+        let fit = self.fit(geometry, measured, &self.s.into(), false);
         self.s = fit.estimate.s.into();
         self.s_dot = fit.estimate.s_dot.into();
         self.biases = fit.biases.into();
@@ -114,20 +115,10 @@ impl Estimator {
         fit.estimate
     }
 
-    /// What [`update`](Self::update) would estimate, searched from `guess` and in any number type. `exact` makes all
-    /// iterations, as derivatives carried by `T` want: they converge after the value.
+    /// What [`update`](Self::update) would estimate, searched from `guess` and in any number type: Gauss-Newton over
+    /// the pose and the static errors, which are eliminated from each step. `exact` makes all iterations, as
+    /// derivatives carried by `T` want: they converge after the value.
     pub fn fit<T: Scalar>(
-        &self,
-        geometry: &Geometry<T>,
-        measured: &Measurement<T>,
-        guess: &Vector3<T>,
-        exact: bool,
-    ) -> Estimate<T> {
-        self.fit_all(geometry, measured, guess, exact).estimate
-    }
-
-    /// Gauss-Newton over the pose and the static errors, which are eliminated from each step.
-    fn fit_all<T: Scalar>(
         &self,
         geometry: &Geometry<T>,
         measured: &Measurement<T>,

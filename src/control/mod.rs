@@ -27,7 +27,7 @@ pub use actuation::{ForceDistribution, VoltageCommand, voltages};
 pub use allowed::AllowedMotion;
 pub use controller::{Controller, Diagnostics, LEAST_WORK};
 pub use damping::{Damping, Mode};
-pub use estimator::{Deviations, Estimate, Estimator};
+pub use estimator::{Deviations, Estimate, Estimator, Fit};
 pub use fitness::{Fitness, fitness_of_currents};
 pub use holding::HoldingTerm;
 pub use parameters::{ControlError, ControllerParameters, Gains, SwarmParameters, Tuning};

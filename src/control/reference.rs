@@ -16,6 +16,13 @@ pub struct ReferencePoint<T> {
     pub acceleration: Vector3<T>,
 }
 
+impl<T: Scalar> Default for ReferencePoint<T> {
+    /// At rest at the origin: for a controller with a path of its own.
+    fn default() -> Self {
+        Self { position: Vector3::zeros(), rate: Vector3::zeros(), acceleration: Vector3::zeros() }
+    }
+}
+
 /// How the path is run through.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Profile {

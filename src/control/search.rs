@@ -106,7 +106,6 @@ impl Search {
 impl Elite {
     /// Initial individuals, those that matter most first.
     fn starts(&self, rng: &mut impl Rng) -> [[f64; 3]; STARTS] {
-        let mut uniform = || -> f64 { StandardUniform.sample(rng) };
         let [best, ..] = self.particles;
         let mut starts = [best; STARTS];
         let (elite, rest) = starts.split_at_mut(QUARTERS);
@@ -115,21 +114,30 @@ impl Elite {
         elite.copy_from_slice(&self.particles);
         let mut distance = FARTHEST;
         for start in neighbours {
-            *start = start.map(|x| x + distance * (2.0 * uniform() - 1.0));
+            *start = start.map(|x| x + within(distance, rng));
             distance *= 0.5;
         }
         let (nearest, farthest) = OTHERS_DISTANCES;
         for (start, place) in others.iter_mut().zip(OTHERS) {
-            let distance = farthest * libm::pow(nearest / farthest, uniform());
-            *start = self.particles[place].map(|x| x + distance * (2.0 * uniform() - 1.0));
+            let distance = farthest * libm::pow(nearest / farthest, uniform(rng));
+            *start = self.particles[place].map(|x| x + within(distance, rng));
         }
         for (k, start) in unheld.iter_mut().enumerate() {
-            let near = if k % 2 == 0 { 0 } else { (uniform() * QUARTERS as f64) as usize };
-            let lambda_f = self.particles[near][2] + UNHELD_DISTANCE * (2.0 * uniform() - 1.0);
-            *start = [uniform(), 0.0, lambda_f];
+            let near = if k % 2 == 0 { 0 } else { (uniform(rng) * QUARTERS as f64) as usize };
+            let lambda_f = self.particles[near][2] + within(UNHELD_DISTANCE, rng);
+            *start = [uniform(rng), 0.0, lambda_f];
         }
         starts
     }
+}
+
+fn uniform(rng: &mut impl Rng) -> f64 {
+    StandardUniform.sample(rng)
+}
+
+/// Uniform within +-`distance`.
+fn within(distance: f64, rng: &mut impl Rng) -> f64 {
+    distance * (2.0 * uniform(rng) - 1.0)
 }
 
 /// The quarter of (rho, delta_hd) in which a particle lies.

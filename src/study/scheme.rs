@@ -1,7 +1,5 @@
 //! The schemes that a study compares: the controller's modes, and what else one could use.
 
-use nalgebra::Vector3;
-
 use super::{Figures, PlatformComputedTorque, VariableDamping};
 use crate::control::{Controller, Damping, Estimator, Measurement, Mode, ReferencePoint, Tuning};
 use crate::coupling::{Experiment, Record, RunError};
@@ -70,7 +68,7 @@ impl Scheme {
                 let tick = |t: f64, measured: &Measurement<f64>| {
                     let fixed = rule.damping(&geometry, &estimator.update(&geometry, measured).s);
                     let tuning = Tuning { mode: Mode::Drac, fixed, ..experiment.tuning };
-                    controller.tick(t, measured, &NO_REFERENCE, &tuning, true)
+                    controller.tick(t, measured, &ReferencePoint::default(), &tuning, true)
                 };
                 experiment.run_with(tick, observe)
             }
@@ -92,10 +90,3 @@ fn joints(experiment: &Experiment) -> Geometry<f64> {
     let mechanism = &experiment.controller.mechanism;
     Geometry::new(mechanism.base_radius, mechanism.joint_spacing)
 }
-
-/// The study's references are the controller's own.
-const NO_REFERENCE: ReferencePoint<f64> = ReferencePoint {
-    position: Vector3::new(0.0, 0.0, 0.0),
-    rate: Vector3::new(0.0, 0.0, 0.0),
-    acceleration: Vector3::new(0.0, 0.0, 0.0),
-};

@@ -31,8 +31,7 @@ pub fn trajectory() -> Result<Vec<Sample>, RunError> {
     };
     let mut controller =
         Controller::new(experiment.controller).map_err(|error| RunError::Control { time: 0.0, error })?;
-    let unused =
-        ReferencePoint { position: Default::default(), rate: Default::default(), acceleration: Default::default() };
+    let unused = ReferencePoint::default();
     let (mut measurements, mut samples) = (Vec::new(), Vec::new());
     experiment.run_with(
         |time, measured| {

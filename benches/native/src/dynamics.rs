@@ -2,7 +2,6 @@
 
 use std::hint::black_box;
 
-use nalgebra::Vector3;
 use rps3::control::{Controller, ControllerParameters, Mode, ReferencePoint, Tuning};
 use rps3::coupling::measure;
 use rps3::dynamics::solver::{Settings, Solver};
@@ -56,8 +55,7 @@ pub fn tick(swarm_size: usize, iterations: usize) -> anyhow::Result<Vec<f64>> {
     parameters.swarm.settings.stall_iterations = iterations;
     let model = PlantModel::new(&PlantParameters::default());
     let tuning = Tuning { mode: Mode::HdracMpso, ..Tuning::default() };
-    let zero = Vector3::zeros();
-    let external = ReferencePoint { position: zero, rate: zero, acceleration: zero };
+    let external = ReferencePoint::default();
     let mut controller = Controller::new(parameters)?;
     let mut times = Vec::new();
     for record in &record()?[450..550] {
