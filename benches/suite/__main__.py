@@ -1,4 +1,4 @@
-"""Measures, prints the table of ratios, writes dist/bench/ and, when asked, the blocks of docs/performance.md.
+"""Measures, prints the table of ratios, writes dist/bench/ and, when asked, the blocks of the documents.
 
 Started by `cargo xtask bench`, which builds what is measured.
 """
@@ -10,13 +10,13 @@ import sys
 
 from rps3_study.fmu import Fmu, extracted
 
-from suite import dynamics, growth, model_exchange, pairs, steps, table, work_precision
+from suite import dynamics, growth, model_exchange, pairs, searches, steps, table, work_precision
 from suite.peers import ROOT, Native
 from suite.table import Listing, Row
 
 DIST = ROOT / "dist"
 OUT = DIST / "bench"
-PAGE = ROOT / "docs/performance.md"
+PAGES = [ROOT / "docs/performance.md", ROOT / "docs/mpso.md"]
 PICTURE = ROOT / "docs/images/work-precision.png"
 
 
@@ -64,6 +64,9 @@ class Suite:
     def swarm(self) -> None:
         self.add(growth.swarms(self.native, self.rounds))
 
+    def searches(self) -> None:
+        self.add(searches.measure(self.native, self.rounds))
+
     def long_run(self) -> None:
         self.add(growth.long_run(self.native, self.minutes))
 
@@ -82,6 +85,7 @@ PARTS = [
     "pair",
     "instances",
     "swarm",
+    "searches",
     "long_run",
     "work_precision",
 ]
@@ -92,7 +96,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("parts", nargs="*", choices=[*PARTS, []], help="what to measure, by default everything")
     parser.add_argument("--rounds", type=int, default=15, help="how often each pair is measured in turn")
     parser.add_argument("--minutes", type=int, default=60, help="simulated minutes of the long run")
-    parser.add_argument("--docs", action="store_true", help="fill the tables and the picture of docs/performance.md")
+    parser.add_argument("--docs", action="store_true", help="fill the tables of docs/, of ratios only with all parts")
     return parser.parse_args()
 
 
@@ -109,10 +113,10 @@ def main() -> None:
     table.write(OUT, suite.rows, suite.listings, suite.data)
     print(f"{OUT.relative_to(ROOT)}: ratios.md, bench.json", file=sys.stderr)
     if options.docs:
-        table.fill(
-            PAGE,
-            {listing.name: listing.markdown() for listing in suite.listings} | {"ratios": table.ratios(suite.rows)},
-        )
+        blocks = {listing.name: listing.markdown() for listing in suite.listings}
+        if not options.parts:  # the one table has the rows of all parts
+            blocks["ratios"] = table.ratios(suite.rows)
+        table.fill(PAGES, blocks)
         if "work-precision points" in suite.data:
             work_precision.draw(suite.data["work-precision points"], PICTURE)
 

@@ -1,4 +1,4 @@
-"""The table of ratios, and the blocks of docs/performance.md that it fills."""
+"""The table of ratios, and the blocks of the documents that it fills."""
 
 from __future__ import annotations
 
@@ -77,12 +77,16 @@ def write(directory: Path, rows: Sequence[Row], listings: Sequence[Listing], dat
     (directory / "bench.json").write_text(json.dumps(everything, indent=1) + "\n", encoding="utf-8")
 
 
-def fill(page: Path, blocks: dict[str, str]) -> None:
-    """Replaces what stands between `<!-- bench:NAME -->` and `<!-- bench -->` in a document."""
-    text = page.read_text(encoding="utf-8")
+def fill(pages: Sequence[Path], blocks: dict[str, str]) -> None:
+    """Replaces what stands between `<!-- bench:NAME -->` and `<!-- bench -->`, in one of the documents each."""
+    texts = {page: page.read_text(encoding="utf-8") for page in pages}
     for name, block in blocks.items():
         pattern = rf"(<!-- bench:{re.escape(name)} -->\n).*?(<!-- bench -->)"
-        text, count = re.subn(pattern, lambda m, b=block: f"{m[1]}\n{b}\n{m[2]}", text, flags=re.DOTALL)
-        if count != 1:
-            raise ValueError(f"{page.name} has {count} blocks bench:{name}")
-    page.write_text(text, encoding="utf-8")
+        found = 0
+        for page, text in texts.items():
+            texts[page], count = re.subn(pattern, lambda m, b=block: f"{m[1]}\n{b}\n{m[2]}", text, flags=re.DOTALL)
+            found += count
+        if found != 1:
+            raise ValueError(f"{found} blocks bench:{name} in {', '.join(page.name for page in pages)}")
+    for page, text in texts.items():
+        page.write_text(text, encoding="utf-8")

@@ -1,12 +1,14 @@
 //! Measures on request: one JSON request a line on standard input, one JSON answer a line on standard
 //! output. Who asks, `benches/suite`, alternates between this program and those it is compared with.
 
+mod argmin_problem;
 mod calls;
 mod crossing;
 mod dynamics;
 mod fmu;
 mod growth;
 mod pair;
+mod searches;
 mod work_precision;
 
 use std::io::{BufRead, Write};
@@ -14,6 +16,8 @@ use std::time::Instant;
 
 use serde::Deserialize;
 use serde_json::{Value, json};
+
+use searches::{Budget, Optimizer};
 
 /// What can be asked; times are seconds an operation, or of each of a row of them.
 #[derive(Deserialize)]
@@ -39,6 +43,8 @@ enum Request {
     Hours { minutes: usize },
     /// A controller tick with a swarm of this size and so many iterations.
     Tick { swarm_size: usize, iterations: usize },
+    /// Seconds of a swarm's search, ours or another's.
+    Search { optimizer: Optimizer, members: usize, budget: Budget, rounds: usize },
     /// Error, right-hand sides and time of each integrator at each tolerance.
     WorkPrecision { rounds: usize },
 }
@@ -61,6 +67,9 @@ fn answer(request: Request) -> anyhow::Result<Value> {
         }
         Request::Hours { minutes } => growth::long_run(minutes)?,
         Request::Tick { swarm_size, iterations } => json!(dynamics::tick(swarm_size, iterations)?),
+        Request::Search { optimizer, members, budget, rounds } => {
+            json!(searches::search(optimizer, members, budget, rounds)?)
+        }
         Request::WorkPrecision { rounds } => json!(work_precision::table(rounds)?),
     })
 }

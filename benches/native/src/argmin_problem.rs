@@ -1,5 +1,7 @@
 //! The objective as argmin wants it, and a point type of argmin's that does not allocate.
 
+use std::marker::PhantomData;
+
 use argmin::core::{CostFunction, Error};
 use argmin_math::{ArgminAdd, ArgminMinMax, ArgminMul, ArgminRandom, ArgminSub, ArgminZeroLike};
 use rand_0_9::Rng;
@@ -9,27 +11,21 @@ pub fn bowl(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum()
 }
 
-/// [`bowl`] for argmin.
-pub struct Bowl;
+/// [`bowl`] for argmin, over positions `P`.
+pub struct Bowl<P>(PhantomData<P>);
 
-impl CostFunction for Bowl {
-    type Param = Vec<f64>;
-    type Output = f64;
-
-    fn cost(&self, x: &Vec<f64>) -> Result<f64, Error> {
-        Ok(bowl(x))
+impl<P> Default for Bowl<P> {
+    fn default() -> Self {
+        Self(PhantomData)
     }
 }
 
-/// [`bowl`] for argmin over arrays.
-pub struct ArrayBowl<const D: usize>;
-
-impl<const D: usize> CostFunction for ArrayBowl<D> {
-    type Param = Point<D>;
+impl<P: AsRef<[f64]>> CostFunction for Bowl<P> {
+    type Param = P;
     type Output = f64;
 
-    fn cost(&self, x: &Point<D>) -> Result<f64, Error> {
-        Ok(bowl(&x.0))
+    fn cost(&self, x: &P) -> Result<f64, Error> {
+        Ok(bowl(x.as_ref()))
     }
 }
 
@@ -40,6 +36,12 @@ pub struct Point<const D: usize>(pub [f64; D]);
 impl<const D: usize> Point<D> {
     fn zip(&self, other: &Self, f: impl Fn(f64, f64) -> f64) -> Self {
         Self(std::array::from_fn(|g| f(self.0[g], other.0[g])))
+    }
+}
+
+impl<const D: usize> AsRef<[f64]> for Point<D> {
+    fn as_ref(&self) -> &[f64] {
+        &self.0
     }
 }
 
