@@ -103,3 +103,27 @@ def test_controller_holds_its_voltages_between_samples(controller: Fmu) -> None:
         instance.set({"d1": 0.3})
         instance.step(1.25e-3, 2.5e-4)
         assert instance.get(controller.names("output")) == held
+
+
+def test_controller_reads_an_input_at_its_sample_within_the_step(controller: Fmu) -> None:
+    """Input derivatives hold for one step (section 4.2.1): what they say of a step without a sample is gone after it."""
+    length, rate, step = controller.variables["d1"], 0.5, 4e-4
+
+    def voltages(derivative_in: int | None = None, offset: float = 0.0) -> dict[str, Value]:
+        """After the sample at 1 ms, which is half way through step 2; `offset` (m) is what d1 then has more."""
+        with Instance(controller) as instance:
+            instance.initialize({"control_mode": 2, "sample_time": 1e-3})
+            start = float(instance["d1"])
+            for k in range(3):
+                if k == derivative_in:
+                    instance.slave.setRealInputDerivatives([length.valueReference], [1], [rate])
+                if k == 2:
+                    instance.set({"d1": start + offset})
+                instance.step(k * step, step)
+            return instance.get([f"v_{motor}{limb}" for motor in ("leg", "rev") for limb in (1, 2, 3)])
+
+    constant = voltages()
+    assert voltages(derivative_in=1) == constant
+    ramped, reached = voltages(derivative_in=2), voltages(offset=rate * step / 2)
+    assert ramped == pytest.approx(reached, rel=1e-12)
+    assert abs(ramped["v_leg1"] - constant["v_leg1"]) > 1e-3
