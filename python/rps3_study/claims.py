@@ -23,7 +23,7 @@ SHORT = {SIX: "six", THREE: "three"}
 TASKS = {
     "smooth": "smooth",
     "constant_speed": "constant speed",
-    "noise": "noise",
+    "sensors": "sensors",
     "push": "push",
     "stop": "stop",
     "stop_push": "stop and push",
@@ -201,7 +201,7 @@ def _smoother(task: str) -> Callable[[Results, str], Check]:
 
 
 def _unstable(results: Results, variant: str) -> Check:
-    figures, passage = results.figures["noise", variant][DRAC], results.passages["noise", variant][DRAC]
+    figures, passage = results.figures["sensors", variant][DRAC], results.passages["sensors", variant][DRAC]
     stop = ", an end stop reached" if figures.end_stop else ", no end stop"
     text = f"{SHORT[variant]}: {number(figures.peak_error)} mm, {number(passage.velocity_error)} mm/s off{stop}"
     return Check(text, figures.end_stop)
@@ -293,7 +293,7 @@ CLAIMS = (
         "abstract; 6.2; 6.3; 7",
         "Experiments confirm all this.",
         "",
-        _settled("no hardware here; runs with the sensors' noise of Table 1 stand in", OPEN),
+        _settled("no hardware here; runs with the sensors' errors of Table 1 stand in", OPEN),
     ),
     Claim(
         "6",
@@ -328,14 +328,14 @@ CLAIMS = (
     Claim(
         "6.3, Figure 9",
         "DRAC is unstable near the singular point, with great fluctuations.",
-        "constant speed with noise: an end stop is reached",
+        "constant speed, sensors of Table 1: an end stop is reached",
         _each_variant(_unstable),
     ),
     Claim(
         "6.3, Figure 10",
         "HDRAC with MPSO has only slight fluctuations there.",
-        "constant speed with noise: largest velocity error below half of HDRAC's",
-        _each_variant(_smoother("noise")),
+        "constant speed, sensors of Table 1: largest velocity error below half of HDRAC's",
+        _each_variant(_smoother("sensors")),
     ),
     Claim(
         "5; 7",

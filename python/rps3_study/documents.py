@@ -24,7 +24,7 @@ ROOT = Path(__file__).resolve().parents[2]
 TITLES = {
     "smooth": "crossing, smooth",
     "constant_speed": "crossing, constant speed",
-    "noise": "the same with noise",
+    "sensors": "the same, sensors of Table 1",
     "push": "crossing, pushed",
     "stop": "stop at the singular pose",
     "stop_push": "stopped there, pushed",

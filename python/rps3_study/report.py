@@ -49,10 +49,10 @@ class PaperFigure:
 
 PAPER_FIGURES = (
     PaperFigure(7, "constant_speed", ("HDRAC", "HDRAC+MPSO")),
-    PaperFigure(9, "noise", ("DRAC",)),
-    PaperFigure(10, "noise", ("HDRAC", "HDRAC+MPSO")),
+    PaperFigure(9, "sensors", ("DRAC",)),
+    PaperFigure(10, "sensors", ("HDRAC", "HDRAC+MPSO")),
 )
-"""7 is a simulation; 9 and 10 are measured, for which runs with the sensors' noise stand in."""
+"""7 is a simulation; 9 and 10 are measured, for which runs with the sensors' errors stand in."""
 
 
 def write(
