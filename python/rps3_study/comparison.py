@@ -1,9 +1,10 @@
-"""What the tuned mode is compared with beside the other modes: its luck, and the best fixed damping in hindsight."""
+"""What the tuned mode is compared with beside the other modes: its luck, and the best fixed factors in hindsight."""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from rps3_study.couple import Run
@@ -17,8 +18,21 @@ RHO = (0.005, 0.01, 0.02, 0.05, 0.1)
 DELTA_HD = (0.0, 0.02, 0.1)
 LAMBDA_F = (0.0, 5e-3)
 """Fixed factors tried; six motors have no use for the last."""
+K_P = (900.0, 3600.0, 10_000.0)
+"""Gains tried with each of them, 1/s2, critically damped; the first is the start value."""
 
 HDRAC, MPSO = 3, 4
+
+
+@dataclass(frozen=True)
+class Fixed:
+    """Fixed factors and gains, and the peak error that they give, mm."""
+
+    peak_error: float
+    rho: float
+    delta_hd: float
+    lambda_f: float
+    k_p: float
 
 
 @dataclass(frozen=True)
@@ -27,17 +41,15 @@ class Comparison:
 
     over_seeds: tuple[float, ...]
     """Peak errors of the tuned mode by seed."""
-    best_fixed: float
-    """Least peak error that any of the fixed factors tried gives."""
-    rho: float
-    delta_hd: float
-    lambda_f: float
-    """These factors."""
+    best_fixed: Fixed
+    """The best of the fixed factors tried at the tuned mode's gains."""
+    best_gains: Fixed
+    """The best at any of the gains tried."""
 
 
-def fixed_factors(variant: str) -> list[tuple[float, float, float]]:
-    """All combinations of rho, delta_hd and lambda_f that are tried."""
-    return list(itertools.product(RHO, DELTA_HD, LAMBDA_F if variant == "three motors" else LAMBDA_F[:1]))
+def fixed_factors(variant: str) -> list[tuple[float, float, float, float]]:
+    """All combinations of rho, delta_hd, lambda_f and k_p that are tried."""
+    return list(itertools.product(RHO, DELTA_HD, LAMBDA_F if variant == "three motors" else LAMBDA_F[:1], K_P))
 
 
 def runs(variant: str) -> int:
@@ -54,10 +66,14 @@ def compare(variant: str, run: Callable[[dict[str, Value]], Run], peak_error: Ca
         peak_error: of a run, infinite for one that ended early.
     """
     seeds = tuple(peak_error(run({"control_mode": MPSO, "seed": seed})) for seed in SEEDS)
-    names = ("rho_fixed", "delta_hd_fixed", "lambda_f_fixed")
-    tried = {
-        factors: peak_error(run({"control_mode": HDRAC, **dict(zip(names, factors, strict=True))}))
-        for factors in fixed_factors(variant)
-    }
-    best = min(tried, key=tried.__getitem__)
-    return Comparison(seeds, tried[best], *best)
+    tried = []
+    for rho, delta_hd, lambda_f, k_p in fixed_factors(variant):
+        factors = {"rho_fixed": rho, "delta_hd_fixed": delta_hd, "lambda_f_fixed": lambda_f}
+        gains = {"k_p": k_p, "k_d": 2.0 * math.sqrt(k_p)}
+        error = peak_error(run({"control_mode": HDRAC, **factors, **gains}))
+        tried.append(Fixed(error, rho, delta_hd, lambda_f, k_p))
+
+    def best(candidates: Iterable[Fixed]) -> Fixed:
+        return min(candidates, key=lambda fixed: fixed.peak_error)
+
+    return Comparison(seeds, best(fixed for fixed in tried if fixed.k_p == K_P[0]), best(tried))

@@ -14,7 +14,7 @@ from pathlib import Path
 import pandas as pd
 
 from rps3_study import summary
-from rps3_study.claims import DRAC, HDRAC, MPSO, PLATFORM, Check, judge_all, number, verdict
+from rps3_study.claims import DRAC, HDRAC, MPSO, PLATFORM, PLATFORM_VARIANTS, Check, judge_all, number, verdict
 from rps3_study.records import RunDirectory
 from rps3_study.results import Results
 from rps3_study.summary import markdown
@@ -96,23 +96,30 @@ def share(value: float) -> str:
 
 def fixed(results: Results) -> str:
     """The best fixed damping in hindsight."""
-    header = ["task", "motors", "HDRAC+MPSO, mm", "over seeds, mm", "best fixed, mm", "rho", "delta_hd", "lambda_f"]
+    factors = ["rho", "delta_hd", "lambda_f"]
+    header = ["task", "motors", "HDRAC+MPSO, mm", "over seeds, mm"]
+    header += ["best fixed, mm", *factors, "gains free: mm", *factors, "K_P, 1/s2"]
     rows: list[list[object]] = []
     for (task, variant), compared in results.comparisons.items():
         own = results.figures[task, variant][MPSO].peak_error
         seeds = f"{number(min(compared.over_seeds))} to {number(max(compared.over_seeds))}"
-        factors = [f"{value:g}" for value in (compared.rho, compared.delta_hd, compared.lambda_f)]
-        rows.append([TITLES[task], variant.split()[0], number(own), seeds, number(compared.best_fixed), *factors])
+        cells = [
+            cell
+            for fixed in (compared.best_fixed, compared.best_gains)
+            for cell in (number(fixed.peak_error), *map("{:g}".format, (fixed.rho, fixed.delta_hd, fixed.lambda_f)))
+        ]
+        rows.append([TITLES[task], variant.split()[0], number(own), seeds, *cells, f"{compared.best_gains.k_p:g}"])
     return markdown(header, rows)
 
 
 def against_platform(results: Results) -> str:
     """What the tuned mode adds to computed torque in platform coordinates."""
-    header = ["task", "motors", "HDRAC+MPSO, mm", "platform coordinates, mm", "lambda_f searched, mm", "MPSO"]
+    header = ["task", "motors", "HDRAC+MPSO, mm", "platform coordinates, mm", "lambda_f searched, mm"]
+    header += ["K_P 3600, mm", "MPSO"]
     rows: list[list[object]] = []
     for (task, variant), schemes in results.baselines.items():
         own = results.figures[task, variant][MPSO].peak_error
-        others = [schemes[name].peak_error for name in (PLATFORM, f"{PLATFORM}, lambda_f searched")]
+        others = [schemes[name].peak_error for name in PLATFORM_VARIANTS]
         ratio = own / others[0]
         outcome = "adds" if ratio < 0.8 else "loses" if ratio > 1.25 else "adds nothing"
         rows.append([TITLES[task], variant.split()[0], *map(number, (own, *others)), outcome])

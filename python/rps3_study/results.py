@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Self
 
-from rps3_study.comparison import Comparison
+from rps3_study.comparison import Comparison, Fixed
 from rps3_study.metrics import Figures
 from rps3_study.singularity import Passage
 
@@ -73,9 +73,12 @@ def _case(row: dict[str, Any]) -> Case:
 
 def _record(values: dict[str, Any], kind: type) -> Any:
     number = {f.name for f in dataclasses.fields(kind) if f.type == "float"}
-    return kind(
-        **{
-            name: math.nan if value is None and name in number else tuple(value) if isinstance(value, list) else value
-            for name, value in values.items()
-        }
-    )
+    return kind(**{name: _value(value, name in number) for name, value in values.items()})
+
+
+def _value(value: Any, number: bool) -> Any:
+    if value is None and number:
+        return math.nan
+    if isinstance(value, list):
+        return tuple(value)
+    return _record(value, Fixed) if isinstance(value, dict) else value

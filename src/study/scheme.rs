@@ -1,7 +1,7 @@
 //! The schemes that a study compares: the controller's modes, and what else one could use.
 
 use super::{Figures, PlatformComputedTorque, VariableDamping};
-use crate::control::{Controller, Damping, Estimator, Measurement, Mode, ReferencePoint, Tuning};
+use crate::control::{Controller, Damping, Estimator, Gains, Measurement, Mode, ReferencePoint, Tuning};
 use crate::coupling::{Experiment, Record, RunError};
 use crate::mechanism::Geometry;
 
@@ -10,6 +10,8 @@ use crate::mechanism::Geometry;
 pub struct Scheme {
     pub name: &'static str,
     pub law: Law,
+    /// K_P, 1/s2, critically damped, where it is another than the experiment's.
+    pub position_gain: Option<f64>,
 }
 
 /// How voltages come about.
@@ -27,8 +29,12 @@ const fn fixed(rho: f64, delta_hd: f64) -> Damping<f64> {
     Damping { rho, delta_hd, lambda_f: if rho > 0.01 { 0.1 * rho } else { 1e-3 } }
 }
 
+const fn scheme(name: &'static str, law: Law) -> Scheme {
+    Scheme { name, law, position_gain: None }
+}
+
 const fn mode(name: &'static str, mode: Mode, damping: Damping<f64>) -> Scheme {
-    Scheme { name, law: Law::Controller(mode, damping) }
+    scheme(name, Law::Controller(mode, damping))
 }
 
 /// The controller's modes, those with fixed damping with two settings each; the swarm is last.
@@ -42,11 +48,16 @@ pub const MODES: [Scheme; 6] = [
 ];
 
 /// What a user would otherwise pick.
-pub const BASELINES: [Scheme; 4] = [
-    Scheme { name: "Nakamura-Hanafusa (manipulability)", law: Law::Variable(VariableDamping::NAKAMURA_HANAFUSA) },
-    Scheme { name: "Maciejewski-Klein (sigma_min)", law: Law::Variable(VariableDamping::MACIEJEWSKI_KLEIN) },
-    Scheme { name: "platform coordinates", law: Law::Platform(PlatformComputedTorque::FIXED) },
-    Scheme { name: "platform coordinates, lambda_f searched", law: Law::Platform(PlatformComputedTorque::SEARCHED) },
+pub const BASELINES: [Scheme; 5] = [
+    scheme("Nakamura-Hanafusa (manipulability)", Law::Variable(VariableDamping::NAKAMURA_HANAFUSA)),
+    scheme("Maciejewski-Klein (sigma_min)", Law::Variable(VariableDamping::MACIEJEWSKI_KLEIN)),
+    scheme("platform coordinates", Law::Platform(PlatformComputedTorque::FIXED)),
+    scheme("platform coordinates, lambda_f searched", Law::Platform(PlatformComputedTorque::SEARCHED)),
+    Scheme {
+        name: "platform coordinates, K_P 3600",
+        law: Law::Platform(PlatformComputedTorque::FIXED),
+        position_gain: Some(3600.0),
+    },
 ];
 
 impl Scheme {
@@ -55,6 +66,12 @@ impl Scheme {
     /// # Errors
     /// A controller or a plant that cannot go on.
     pub fn run(&self, experiment: &Experiment, observe: impl FnMut(&Record)) -> Result<(), RunError> {
+        let gains = self.position_gain.map_or(experiment.tuning.gains, |k_p| Gains {
+            position: k_p,
+            velocity: 2.0 * k_p.sqrt(),
+            ..experiment.tuning.gains
+        });
+        let experiment = &Experiment { tuning: Tuning { gains, ..experiment.tuning }, ..experiment.clone() };
         let at_start = |error| RunError::Control { time: 0.0, error };
         match self.law {
             Law::Controller(mode, fixed) => {

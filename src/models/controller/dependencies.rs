@@ -37,7 +37,7 @@ pub fn dependencies(name: &str, all: &[String]) -> Vec<String> {
     match name {
         "heave_est" | "tilt_x_est" | "tilt_y_est" => estimate,
         // with a computation delay it is that of the predicted pose
-        "sigma_min" => [estimate, inputs.currents].concat(),
+        "sigma_min" | "in_singular_region" => [estimate, inputs.currents].concat(),
         "heave_ref" => [&time[..], &inputs.reference[..1]].concat(),
         "tilt_x_ref" => [&time[..], &inputs.reference[1..2]].concat(),
         "tilt_y_ref" => [&time[..], &inputs.reference[2..]].concat(),
@@ -72,6 +72,7 @@ pub fn initial_dependencies(name: &str, all: &[String]) -> Vec<String> {
         "heave_ref" => reference(0),
         "tilt_x_ref" => reference(1),
         "tilt_y_ref" => reference(2),
+        "in_singular_region" => [estimate, strings(&["delta_hd_fixed"])].concat(),
         "err_position" => [estimate, mode, inputs.reference.to_vec()].concat(),
         "err_rotation" => [estimate, mode, inputs.reference[1..].to_vec()].concat(),
         "sensor_fault" => inputs.measurements(),
@@ -87,7 +88,7 @@ fn is_foreign(name: &str, known: &str) -> bool {
         "computation_delay" | "filter_time" | "sensor_timeout" => true,
         "motor_la" => !electric,
         "rho_fixed" => !(electric || ["rho", "lyapunov", "lyapunov_dot"].contains(&name)),
-        "delta_hd_fixed" => !(electric || ["delta_hd", "rho_hd", "lyapunov_dot", "in_singular_region"].contains(&name)),
+        "delta_hd_fixed" => !(electric || ["delta_hd", "rho_hd", "lyapunov_dot"].contains(&name)),
         // three motors alone damp their force distribution
         "lambda_f_fixed" => !(name.starts_with("v_leg") || ["lambda_f", "saturated"].contains(&name)),
         "lambda_f_max" => name.starts_with("v_rev"),

@@ -270,7 +270,7 @@ fn write(values: &mut Values, d: &Diagnostics, sensor_fault: bool) {
     values.reals[slots.outputs..slots.outputs + outputs.len()].copy_from_slice(&outputs);
     values.integers[slots.iterations] = i32::try_from(d.iterations).unwrap_or(i32::MAX);
     values.booleans[slots.saturated] = d.saturated;
-    values.booleans[slots.in_singular_region] = d.sigma_min < d.damping.delta_hd;
+    values.booleans[slots.in_singular_region] = d.sigma_min < values.reals[slots.tuning.delta_hd_fixed];
     values.booleans[slots.sensor_fault] = sensor_fault;
 }
 
