@@ -6,7 +6,8 @@ use rps3::control::{ControllerParameters, Measurement};
 use rps3::control::{Damping, Estimate, Gains, Reference, SingularBasis, Situation};
 use rps3::coupling::measure;
 use rps3::defaults as d;
-use rps3::dynamics::{Inputs, PlantModel, PlantParameters, PlantState};
+use rps3::dynamics::{Inputs, PlantModel, PlantParameters, PlantState, derivative};
+use rps3::mechanism::Pose;
 use rps3::svd::Svd;
 
 const SAMPLE_TIME: f64 = 1e-3;
@@ -14,6 +15,10 @@ const VIA: [f64; 3] = [d::VIA_HEAVE, d::VIA_TILT_X, d::VIA_TILT_Y];
 
 /// The situation at `s` and `s_dot` while the default crossing's reference is at 0.45 s.
 fn situation(s: [f64; 3], s_dot: [f64; 3]) -> (PlantModel<f64>, Situation<f64>) {
+    situation_with(&Gains::default(), s, s_dot)
+}
+
+fn situation_with(gains: &Gains, s: [f64; 3], s_dot: [f64; 3]) -> (PlantModel<f64>, Situation<f64>) {
     let model = PlantModel::new(&PlantParameters::default());
     let parameters = ControllerParameters::default();
     let reference = Reference::new(
@@ -27,7 +32,7 @@ fn situation(s: [f64; 3], s_dot: [f64; 3]) -> (PlantModel<f64>, Situation<f64>) 
     x.fixed_rows_mut::<3>(3).copy_from(&Vector3::from(s_dot));
     let measured: Measurement<f64> = measure(&model, &x, &Inputs::zero());
     let estimate = Estimate { s: s.into(), s_dot: s_dot.into() };
-    let situation = Situation::new(&model, &estimate, &reference.at(0.45), &measured, &Gains::default());
+    let situation = Situation::new(&model, &estimate, &reference.at(0.45), &measured, gains);
     (model, situation)
 }
 
@@ -120,4 +125,29 @@ fn leftover_velocity_along_the_degenerate_direction_is_gone_at_the_next_sample()
     let s_ddot = SingularBasis::new(&situation).coordinate_acceleration(damping.rho, rho_hd);
     let after = before + SAMPLE_TIME * degenerate.dot(&twist_rate(&model, &situation, &s_ddot)); // (4.17), (4.18)
     assert!(after.abs() < 1e-6 * before.abs(), "{before:e} -> {after:e}");
+}
+
+proptest! {
+    #[test]
+    fn acceleration_feedback_adds_the_error_of_p_s_acceleration((s, s_dot) in any_state(), k_a in -0.5..0.5_f64) {
+        // Figure 8: what P lacks of its reference's acceleration, on the joint side by J's columns for translations
+        let gains = Gains { acceleration: k_a, ..Gains::default() };
+        let ((model, with), (_, without)) = (situation_with(&gains, s, s_dot), situation(s, s_dot));
+        // P by central differences of its position along the reference and along the plant's motion
+        let p = |s: Vector3<f64>| Pose::new(&model.geometry, &s).position;
+        let second = |at: &dyn Fn(f64) -> Vector3<f64>, h: f64| (p(at(h)) - p(at(0.0)) * 2.0 + p(at(-h))) / (h * h);
+        let parameters = ControllerParameters::default();
+        let waypoints = parameters.waypoints.map(Vector3::from);
+        let reference = Reference::new(waypoints, parameters.move_time, parameters.profile, model.geometry.joint_radius);
+        let mut x = PlantState::zeros();
+        x.fixed_rows_mut::<3>(0).copy_from(&Vector3::from(s));
+        x.fixed_rows_mut::<3>(3).copy_from(&Vector3::from(s_dot));
+        let s_ddot: Vector3<f64> = derivative(&model, &x, &Inputs::zero()).fixed_rows::<3>(3).into();
+        let plant = |t: f64| Vector3::from(s) + Vector3::from(s_dot) * t + s_ddot * (0.5 * t * t);
+        let wanted = second(&|t| reference.at(0.45 + t).position, 1e-3);
+        let missing = wanted - second(&plant, 1e-4 / (1.0 + s_ddot.amax()).sqrt());
+        let expected = without.jacobian.fixed_columns::<3>(0) * missing * k_a;
+        let added = with.desired - without.desired;
+        prop_assert!((added - expected).amax() < 1e-4 * (1.0 + missing.amax()), "{added} {expected}");
+    }
 }

@@ -6,7 +6,7 @@ use rps3::coupling::Experiment;
 use rps3::dynamics::PlantParameters;
 use rps3::study::{Crossing, MODES};
 
-/// Peak pose errors, mm: the best of the fixed modes and the swarm's.
+/// Peak pose errors, mm: the best of the five settings of the fixed modes in [`MODES`], and the swarm's.
 fn peaks(revolute_motors: bool, length_noise: f64) -> (f64, f64) {
     let experiment = Experiment { length_noise, ..Crossing::default().experiment(revolute_motors) };
     let peaks = MODES.map(|scheme| {
@@ -19,25 +19,25 @@ fn peaks(revolute_motors: bool, length_noise: f64) -> (f64, f64) {
 }
 
 #[test]
-fn six_motors_cross_within_50_micrometres_and_an_eighth_of_any_fixed_damping() {
+fn six_motors_cross_within_50_micrometres_and_an_eighth_of_the_fixed_modes() {
     let (fixed, swarm) = peaks(true, 0.0);
     assert!(swarm < 0.05 && swarm < fixed / 8.0, "{swarm} {fixed}");
 }
 
 #[test]
-fn six_motors_cross_within_300_micrometres_and_a_fifth_of_any_fixed_damping_despite_noise() {
+fn six_motors_cross_within_300_micrometres_and_a_fifth_of_the_fixed_modes_despite_noise() {
     let (fixed, swarm) = peaks(true, 1e-4);
     assert!(swarm < 0.3 && swarm < fixed / 5.0, "{swarm} {fixed}");
 }
 
 #[test]
-fn three_motors_cross_within_500_micrometres_and_an_eighth_of_any_fixed_damping() {
+fn three_motors_cross_within_500_micrometres_and_an_eighth_of_the_fixed_modes() {
     let (fixed, swarm) = peaks(false, 0.0);
     assert!(swarm < 0.5 && swarm < fixed / 8.0, "{swarm} {fixed}");
 }
 
 #[test]
-fn three_motors_cross_within_1_millimetre_and_a_fifth_of_any_fixed_damping_despite_noise() {
+fn three_motors_cross_within_1_millimetre_and_a_fifth_of_the_fixed_modes_despite_noise() {
     let (fixed, swarm) = peaks(false, 1e-4);
     assert!(swarm < 1.0 && swarm < fixed / 5.0, "{swarm} {fixed}");
 }

@@ -3,7 +3,9 @@
 
 use nalgebra::{Matrix6, Vector3, Vector6};
 use proptest::prelude::*;
-use rps3::control::{Damping, Estimate, Gains, Measurement, ReferencePoint, SingularBasis, Situation, lyapunov_rate};
+use rps3::control::{
+    Damping, Estimate, Gains, Measurement, ReferencePoint, SingularBasis, Situation, lyapunov, lyapunov_rate,
+};
 use rps3::defaults::{BASE_RADIUS, JOINT_SPACING};
 use rps3::dynamics::{MechanismParameters, PlantModel};
 use rps3::mechanism::{Geometry, Limb, OverallJacobian, Pose, singular_heights};
@@ -66,10 +68,17 @@ fn printed_4_12_speeds_up_what_the_scheme_means_to_stop() {
 
 #[test]
 fn degenerate_directions_are_those_with_sigma_far_below_rho() {
-    // the line before (4.17) prints sigma_j >> rho for all; (4.15) weighs them by rho^2 / (sigma^2 + rho^2)
-    let weight = |sigma: f64, rho: f64| rho * rho / (sigma * sigma + rho * rho);
-    assert!(weight(1.0, 0.01) < 1e-3, "regular: its velocity is kept");
-    assert!(weight(1e-4, 0.01) > 0.999, "degenerate: its velocity is removed");
+    // the line before (4.17) prints sigma_j >> rho for all; what (4.14) takes of a velocity says which they are
+    let (rho_hd, sample_time) = (1000.0, 1e-3);
+    let sigma = Vector6::new(1.0, 0.3, 0.1, 0.01, 1e-3, 1e-4);
+    let velocity = Vector6::repeat(1.0);
+    let q_ddot = damping(0.01)
+        .acceleration(&Matrix6::from_diagonal(&sigma), &Vector6::zeros(), &velocity, rho_hd)
+        .expect("a damped system");
+    let left = velocity + q_ddot * sample_time;
+    assert!(left[0] > 0.999 && left[2] > 0.98, "regular: their velocities are kept, {left}");
+    assert!((left[3] - 0.5).abs() < 1e-9, "sigma = rho: half is kept");
+    assert!(left[4] < 0.02 && left[5] < 1e-3, "degenerate: their velocities are removed, {left}");
 }
 
 /// The controller's situation at a pose, a rate and a reference some way off.
@@ -149,14 +158,16 @@ fn deceleration_region_ends_at_its_width() {
 
 #[test]
 fn a_changing_rho_adds_to_the_lyapunov_functions_rate() {
-    // (5.2) with q_dot held, so that all of (5.4) but the missing term vanishes
-    let j = singular_jacobian();
-    let q_dot = Vector6::from_fn(|i, _| 0.1 * (i as f64 - 2.0));
-    let l = |rho: f64| 0.5 * ((j * q_dot).norm_squared() + rho * rho * q_dot.norm_squared());
+    // (5.2) with pose and rates held, so that all of (5.4) but the missing term vanishes
+    let at = situation(Vector3::new(0.05, 0.1, 0.1), Vector3::new(-0.1, 0.3, 0.2), Vector3::zeros(), &GAINS);
     let (rho, rho_dot, step) = (0.2, 3.0, 1e-6);
-    let rate = (l(rho + rho_dot * step) - l(rho - rho_dot * step)) / (2.0 * step);
-    let missing = rho * rho_dot * q_dot.norm_squared();
-    assert!((rate - missing).abs() < 1e-9 && missing > 0.01);
+    let l = |time: f64| lyapunov(&at, &GAINS, rho + rho_dot * time);
+    let rate = (l(step) - l(-step)) / (2.0 * step);
+    let missing = rho * rho_dot * at.twist.norm_squared();
+    assert!((rate - missing).abs() < 1e-9 && missing > 0.001, "{rate} {missing}");
+    // and the rate by (5.5) does not see it
+    let before = lyapunov_rate(&at, &GAINS, rho, 0.0);
+    assert!((lyapunov_rate(&at, &GAINS, rho + 0.1, 0.0) - before).abs() < 1e-12, "without rho_hd, rho plays no part");
 }
 
 #[test]

@@ -159,22 +159,20 @@ fn a_member_with_equal_bounds_stays_where_it_is() {
 }
 
 #[test]
-fn without_decay_scale_distance_plays_no_part() {
-    // A function whose contours do not care where the best is: with s = 0 the units of a member,
-    // which only distance sees, change nothing but those units.
-    let settings = Settings { decay_max: 0.0, decay_min: 0.0, ..Settings::default() };
-    let search = |settings, unit: f64| {
-        let bounds = Bounds::new([-1.0, -1.0], [1.0, 1.0]).unwrap();
+fn distance_plays_a_part_by_its_decay_scale_and_errors_by_their_order_alone() {
+    let search = |decay: f64, unit: f64| {
+        let settings = Settings { decay_max: decay, decay_min: decay, ..unstalled(30) };
         let mut visited = Vec::new();
-        Swarm::new(bounds, settings).unwrap().minimize(&mut generator(2), &[], |x| {
+        swarm::<2>(RASTRIGIN.lower, RASTRIGIN.upper, settings).minimize(&mut generator(2), &[], |x| {
             visited.push(*x);
-            unit * (RASTRIGIN.value)(&[5.0 * x[0], 5.0 * x[1]])
+            unit * (RASTRIGIN.value)(x)
         });
         visited
     };
-    // Ranks see the order of errors only, not their size.
-    assert_eq!(search(settings, 1.0), search(settings, 1024.0));
-    assert_ne!(search(settings, 1.0), search(Settings::default(), 1.0));
+    // Error ranks differ by one, distance ranks by at most 39: below 1 / 39 distance overrules no error.
+    assert_eq!(search(0.0, 1.0), search(0.02, 1.0));
+    assert_ne!(search(0.02, 1.0), search(0.7, 1.0));
+    assert_eq!(search(0.7, 1.0), search(0.7, 1024.0), "ranks see the order of errors, not their size");
 }
 
 /// Every bit of a solution.

@@ -23,7 +23,7 @@ use crate::scalar::{Scalar, constant};
 pub struct Estimate<T> {
     /// (heave in m, tilt_x, tilt_y in rad).
     pub s: Vector3<T>,
-    /// Their rates, 1/s.
+    /// Their rates, m/s and rad/s.
     pub s_dot: Vector3<T>,
 }
 

@@ -6,7 +6,7 @@
 //! reference there is weighed, and whether three motors can hold the pose there. What a tick's dampings share
 //! is computed once in [`Fitness::new`].
 
-use nalgebra::{Matrix3, Matrix3x6, Matrix6x3, Vector3, Vector6};
+use nalgebra::{Matrix3, Matrix3x6, Matrix6x3, SVector, Vector3, Vector6};
 
 use super::actuation::{back_emf, damp};
 use super::holding::Holding;
@@ -90,6 +90,15 @@ fn current_limits<T: Scalar>(model: &PlantModel<T>, situation: &Situation<T>) ->
     (emf.map(|e| (-limit - e) / resistance), emf.map(|e| (limit - e) / resistance))
 }
 
+/// Currents of the first `N` motors, A, cut to what the voltage limit keeps up.
+#[inline]
+fn kept<T: Scalar, const N: usize>(
+    currents: &SVector<T, N>,
+    (lowest, highest): (&Vector6<T>, &Vector6<T>),
+) -> SVector<T, N> {
+    SVector::from_fn(|i, _| currents[i].max(lowest[i]).min(highest[i]))
+}
+
 /// The fitness (m2) of currents (A), written out: what [`Fitness::evaluate`] computes for many
 /// dampings at the price of a few operations each. Can be differentiated through.
 pub fn fitness_of_currents<T: Scalar>(
@@ -100,7 +109,7 @@ pub fn fitness_of_currents<T: Scalar>(
     tuning: &Tuning<T>,
 ) -> T {
     let (lowest, highest) = current_limits(model, situation);
-    let kept = Vector6::from_fn(|i, _| currents[i].max(lowest[i]).min(highest[i]));
+    let kept = kept(currents, (&lowest, &highest));
     let force = situation.leg_map * kept.fixed_rows::<3>(0) + situation.revolute_map * kept.fixed_rows::<3>(3)
         - situation.dynamics.bias
         - situation.friction;
@@ -192,23 +201,18 @@ impl<'a> Fitness<'a> {
     /// s_ddot that the limited motors cause when `wanted` is asked for.
     #[inline]
     fn respond(&self, wanted: &Vector3<f64>, lambda_f: f64) -> Vector3<f64> {
+        let limits = (&self.lowest, &self.highest);
         match &self.actuators {
             Actuators::Six { currents, still, response, free } => {
                 let asked = currents * wanted + still;
-                let kept = self.limit(asked);
+                let kept = kept(&asked, limits);
                 // within the limits six motors give what was asked for
                 if kept == asked { *wanted } else { response * kept + free }
             }
             Actuators::Three { components, still, sigma, right, response, free } => {
                 let leg = right * damp(&(components * wanted + still), sigma, lambda_f);
-                let kept = Vector3::from_fn(|i, _| leg[i].max(self.lowest[i]).min(self.highest[i]));
-                response * kept + free
+                response * kept(&leg, limits) + free
             }
         }
-    }
-
-    #[inline]
-    fn limit(&self, currents: Vector6<f64>) -> Vector6<f64> {
-        Vector6::from_fn(|i, _| currents[i].max(self.lowest[i]).min(self.highest[i]))
     }
 }

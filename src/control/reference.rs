@@ -10,9 +10,9 @@ use crate::scalar::{Scalar, constant};
 pub struct ReferencePoint<T> {
     /// (heave in m, tilt_x, tilt_y in rad).
     pub position: Vector3<T>,
-    /// Its rate, 1/s.
+    /// Its rate, m/s and rad/s.
     pub rate: Vector3<T>,
-    /// Its acceleration, 1/s2.
+    /// Its acceleration, m/s2 and rad/s2.
     pub acceleration: Vector3<T>,
 }
 

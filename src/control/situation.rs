@@ -84,10 +84,11 @@ impl<T: Scalar> Situation<T> {
         let (leg_map, revolute_map) = current_maps(model, &limbs);
         let length_rates = Vector3::from_fn(|i, _| limb_motions[i].length_rate);
         let angle_rates = Vector3::from_fn(|i, _| limb_motions[i].angle_rate);
+        let leg_friction = model.motors.leg.friction(&length_rates);
+        let revolute_friction = model.motors.revolute.friction(&angle_rates);
         let mut friction = Vector3::zeros();
         for i in 0..3 {
-            friction += limbs[i].length_gradient * (model.motors.leg.reflected_friction * length_rates[i])
-                + limbs[i].angle_gradient * (model.motors.revolute.reflected_friction * angle_rates[i]);
+            friction += limbs[i].length_gradient * leg_friction[i] + limbs[i].angle_gradient * revolute_friction[i];
         }
         Self {
             s,

@@ -11,8 +11,8 @@ pub fn lyapunov<T: Scalar>(situation: &Situation<T>, gains: &Gains<T>, rho: T) -
         + half * (rate.norm_squared() + rho * rho * situation.twist.norm_squared())
 }
 
-/// dL/dt (5.5), m2/s3, which is (5.6) while the reference rests. It assumes ideal computed torque
-/// and constant rho.
+/// dL/dt (5.5), m2/s3, which is (5.6) while the reference rests. It assumes ideal computed torque,
+/// constant rho and no acceleration feedback.
 pub fn lyapunov_rate<T: Scalar>(situation: &Situation<T>, gains: &Gains<T>, rho: T, rho_hd: T) -> T {
     let rate = situation.jacobian * situation.twist;
     let rate_error = situation.reference_rate - rate;

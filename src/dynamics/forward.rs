@@ -39,10 +39,9 @@ pub fn evaluate<T: Scalar>(model: &PlantModel<T>, x: &PlantState<T>, inputs: &In
     let length_rates = Vector3::from_fn(|i, _| limb_motions[i].length_rate);
     let angle_rates = Vector3::from_fn(|i, _| limb_motions[i].angle_rate);
 
-    let mut leg_forces = i_leg * motors.leg.force_constant - length_rates * motors.leg.reflected_friction;
+    let mut leg_forces = i_leg * motors.leg.force_constant - motors.leg.friction(&length_rates);
     // open circuits carry no current: i_rev stays zero without revolute motors
-    let mut revolute_torques =
-        i_rev * motors.revolute.force_constant - angle_rates * motors.revolute.reflected_friction;
+    let mut revolute_torques = i_rev * motors.revolute.force_constant - motors.revolute.friction(&angle_rates);
     if let Some(stops) = &model.stops {
         for i in 0..3 {
             leg_forces[i] += stops.length.force(limbs[i].length, length_rates[i]);

@@ -42,6 +42,12 @@ impl<T: Scalar> Drive<T> {
             reflected_friction: ratio * ratio * parameters.motor_bm,
         }
     }
+
+    /// Joint forces, N or N.m, that friction takes of three motors at these joint rates, m/s or rad/s.
+    #[inline]
+    pub fn friction(&self, joint_rates: &Vector3<T>) -> Vector3<T> {
+        joint_rates * self.reflected_friction
+    }
 }
 
 impl<T: Scalar> Motors<T> {

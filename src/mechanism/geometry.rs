@@ -31,7 +31,7 @@ impl<T: Scalar> Geometry<T> {
         }
     }
 
-    /// Height-less position of P from limb lengths (m) and angles (rad): mean(B_i), without asking
+    /// Position of P, m, from limb lengths (m) and angles (rad): mean(B_i), without asking
     /// whether the three points fit a rigid platform. The paper's P formula (section 6.1).
     pub fn mean_joint_position(&self, lengths: [T; 3], angles: [T; 3]) -> Vector3<T> {
         let mut sum = Vector3::zeros();

@@ -106,7 +106,7 @@ def test_controller_holds_its_voltages_between_samples(controller: Fmu) -> None:
 
 
 def test_controller_reads_an_input_at_its_sample_within_the_step(controller: Fmu) -> None:
-    """Input derivatives hold for one step (section 4.2.1): what they say of a step without a sample is gone after it."""
+    """Input derivatives hold for one step (section 4.2.1): those of a step without a sample are gone after it."""
     length, rate, step = controller.variables["d1"], 0.5, 4e-4
 
     def voltages(derivative_in: int | None = None, offset: float = 0.0) -> dict[str, Value]:

@@ -53,7 +53,7 @@ def test_tuned_damping_brings_the_robot_to_rest_at_the_end(plant: Fmu, controlle
 
 
 @VARIANTS
-def test_tuned_damping_tracks_better_than_any_fixed_one(plant: Fmu, controller: Fmu, revolute_motors: bool) -> None:
+def test_tuned_damping_tracks_better_than_the_fixed_modes(plant: Fmu, controller: Fmu, revolute_motors: bool) -> None:
     errors = {
         mode: figures(cross(plant, controller, mode, revolute_motors), RADIUS).peak_error
         for mode in (RAC, DRAC, HDRAC, MPSO)
@@ -84,6 +84,28 @@ def test_push_at_the_singular_pose_is_felt_and_recovered_from(plant: Fmu, contro
     np.testing.assert_array_equal(run["plant.heave"][before], calm["plant.heave"][before])
     assert np.abs(run["plant.heave"] - calm["plant.heave"]).max() > 1e-5
     assert run["plant.heave"][-1] == pytest.approx(calm["plant.heave"][-1], abs=2e-3)
+
+
+def test_acceleration_feedback_lessens_what_a_push_does(plant: Fmu, controller: Fmu) -> None:
+    push = next(task for task in tasks(controller) if task.key == "push")
+
+    def peak(feedback: float) -> float:
+        parameters: dict[str, Value] = {"control_mode": DRAC, "k_a": feedback}
+        return figures(run_crossing(plant, controller, {}, parameters, disturbance=push.disturbance), RADIUS).peak_error
+
+    assert peak(0.5) < 0.95 * peak(0.0) < 0.95**2 * peak(-0.5)
+
+
+@pytest.mark.parametrize("mode", [RAC, DRAC, HDRAC, MPSO])
+def test_singular_region_is_where_the_smallest_singular_value_is_small_in_every_mode(
+    plant: Fmu, controller: Fmu, mode: int
+) -> None:
+    run = cross(plant, controller, mode)
+    inside = run["controller.in_singular_region"] != 0.0
+    np.testing.assert_array_equal(
+        inside, run["controller.sigma_min"] < float(controller.variables["delta_hd_fixed"].start)
+    )
+    assert inside.any() and not inside.all()
 
 
 def test_failed_run_ends_early_and_says_why(plant: Fmu, controller: Fmu) -> None:

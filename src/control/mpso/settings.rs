@@ -23,7 +23,7 @@ pub struct Settings {
     /// First stopping criterion: iterations g_max, at least 1. Default 30.
     pub max_iterations: usize,
     /// Second stopping criterion: iterations in a row without a better solution, at least 1; as
-    /// many as `max_iterations` turn it off. Default 8.
+    /// many as `max_iterations` turn it off. Default 12.
     pub stall_iterations: usize,
     /// Pull to the individual's own best c1 (3.1), at least 0. Default 2.
     pub c1: f64,

@@ -172,12 +172,7 @@ impl<const D: usize> Swarm<D> {
         for (k, particle) in self.particles.iter().enumerate() {
             // All are equal as long as the best is infinite too, for NaN.max(0) is 0.
             self.ranking.set_excess(k, (particle.error - best.error).max(0.0));
-            let mut squared = 0.0; // (3.4)
-            for g in 0..D {
-                let difference = self.scale[g] * (particle.position[g] - best.position[g]);
-                squared += difference * difference;
-            }
-            self.ranking.set_squared_distance(k, squared);
+            self.ranking.set_squared_distance(k, squared_distance(&particle.position, &best.position, &self.scale));
         }
         self.order.copy_from_slice(self.ranking.by_score(s));
         let size = self.settings.swarm_size;
@@ -185,6 +180,17 @@ impl<const D: usize> Swarm<D> {
             self.order.swap(size - 1, size + place);
         }
     }
+}
+
+/// D_k (3.4), squared, each member's difference times its `scale`.
+#[inline]
+fn squared_distance<const D: usize>(a: &[f64; D], b: &[f64; D], scale: &[f64; D]) -> f64 {
+    let mut squared = 0.0;
+    for g in 0..D {
+        let difference = scale[g] * (a[g] - b[g]);
+        squared += difference * difference;
+    }
+    squared
 }
 
 /// The best individual so far.
@@ -212,6 +218,15 @@ mod tests {
     use rand_xoshiro::Xoshiro256PlusPlus;
 
     use super::*;
+
+    #[test]
+    fn distance_counts_each_member_in_its_range() {
+        let bounds = Bounds::new([0.0, -50.0, 7.0], [1.0, 50.0, 7.0]).unwrap();
+        let swarm = Swarm::new(bounds, Settings::default()).unwrap();
+        // 0.3 and 0.4 of the ranges, and a member without a range
+        let squared = squared_distance(&[0.5, 20.0, 7.0], &[0.2, -20.0, 7.0], &swarm.scale);
+        assert!((squared - 0.25).abs() < 1e-15, "{squared}");
+    }
 
     #[test]
     fn the_best_survives_even_where_its_score_is_poor() {

@@ -104,7 +104,10 @@ fn outputs() -> Vec<Variable> {
     }
     list.push(output(106, "rho", None, "Damping factor rho in force (4.11)").nominal(0.1));
     list.push(output(107, "rho_hd", Some("1/s"), "Velocity damping factor rho_hd in force (4.16)").nominal(1e3));
-    list.push(output(108, "delta_hd", None, "Width delta_hd of the deceleration region in force (4.16), in mode 4 as tuned").nominal(0.1));
+    list.push(
+        output(108, "delta_hd", None, "Width delta_hd of the deceleration region in force (4.16), in mode 4 as tuned")
+            .nominal(0.1),
+    );
     list.push(output(109, "lambda_f", None, "Damping of the force distribution in force").nominal(0.1));
     list.push(output(110, "sigma_min", None, "Smallest singular value of J at the estimated pose").nominal(0.1));
     list.push(output(111, "lyapunov", Some("m2/s2"), "Lyapunov function (5.2)").nominal(1e-4));
