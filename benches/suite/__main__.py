@@ -10,7 +10,7 @@ import sys
 
 from rps3_study.fmu import Fmu, extracted
 
-from suite import dynamics, growth, model_exchange, pairs, searches, steps, table, work_precision
+from suite import dynamics, growth, model_exchange, pairs, searches, steps, table, ticks, work_precision
 from suite.peers import ROOT, Native
 from suite.table import Listing, Row
 
@@ -61,6 +61,9 @@ class Suite:
     def instances(self) -> None:
         self.add(growth.instances(self.plant, self.controller, max(1, self.rounds // 5)))
 
+    def tick(self) -> None:
+        self.add(ticks.measure(self.native, self.rounds))
+
     def swarm(self) -> None:
         self.add(growth.swarms(self.native, self.rounds))
 
@@ -84,6 +87,7 @@ PARTS = [
     "model_exchange",
     "pair",
     "instances",
+    "tick",
     "swarm",
     "searches",
     "long_run",

@@ -120,12 +120,11 @@ def _outcome(plant: Fmu, controller: Fmu, study: Study, index: int) -> Record:
     case, robot = study.case(index), study.robot(study.case(index).sample)
     task = next(task for task in tasks(controller) if task.key == study.task)
     nominal, believed = _starts(plant), _starts(controller)
-    believed.update(task.parameters)
+    believed |= {**task.parameters, "seed": robot.seed, "sensor_scale": robot.sensor_scale}
     for axis, value in zip(study.axes, case.point, strict=True):
         for target, changes in zip((nominal, believed), axis.assignments(value, plant, controller), strict=True):
             target.update(changes)
     believed |= {"control_mode": case.mode, "revolute_motors": study.revolute_motors}
-    believed |= {"seed": robot.seed, "sensor_scale": robot.sensor_scale}
     actual = {**nominal, "revolute_motors": study.revolute_motors, **robot.plant_parameters(nominal)}
 
     poses = homing.path(believed)

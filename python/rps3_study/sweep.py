@@ -12,6 +12,14 @@ import numpy as np
 from rps3_study.fmu import Fmu, Value
 
 SIDES = ("plant", "controller")
+SET_BY_STUDY = {
+    "control_mode": "--modes",
+    "revolute_motors": "--motors",
+    "heave_start": "start_heave",
+    "tilt_x_start": "start_tilt_x",
+    "tilt_y_start": "start_tilt_y",
+}
+"""Parameters that a sweep cannot vary, and what they follow."""
 
 
 @dataclass(frozen=True)
@@ -43,12 +51,14 @@ class Axis:
         return cls(name, tuple(numbers))
 
     def check(self, plant: Fmu, controller: Fmu) -> None:
-        """Makes sure that there is such a parameter.
+        """Makes sure that there is such a parameter, and that it can be varied.
 
         Raises:
-            ValueError: when neither FMU has it.
+            ValueError: when neither FMU has it, or the study sets it itself.
         """
         side, parameter = self._place()
+        if parameter in SET_BY_STUDY:
+            raise ValueError(f"{self.name} follows {SET_BY_STUDY[parameter]} and cannot be varied")
         fmus = [fmu for name, fmu in zip(SIDES, (plant, controller), strict=True) if side in (None, name)]
         if not any(parameter in fmu.names("parameter") for fmu in fmus):
             raise ValueError(f"there is no parameter {self.name}")

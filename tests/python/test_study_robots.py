@@ -6,13 +6,13 @@ import numpy as np
 import pandas as pd
 import pytest
 from rps3_study import homing, summary
-from rps3_study.couple import run_crossing
-from rps3_study.fmu import Fmu, Instance
+from rps3_study.couple import Run, run_crossing
+from rps3_study.fmu import Fmu, Instance, Value
 from rps3_study.limits import Limits
 from rps3_study.metrics import COORDINATES, pose_error
 from rps3_study.montecarlo import DEVIATIONS, Robot
 from rps3_study.study import FAILED, FINISHED, Study, execute
-from rps3_study.sweep import Axis, grid
+from rps3_study.sweep import SET_BY_STUDY, Axis, grid
 
 NOMINAL = {"base_radius": 0.4172, "joint_spacing": 0.3616}
 
@@ -68,6 +68,38 @@ def test_axis_goes_to_the_fmus_that_have_the_parameter(plant: Fmu, controller: F
     for wrong in ("plant.k_p", "robot.k_p", "heave"):
         with pytest.raises(ValueError, match="there is no parameter"):
             Axis(wrong, (1.0,)).check(plant, controller)
+
+
+def test_every_parameter_that_can_be_varied_reaches_its_fmu(
+    plant: Fmu, controller: Fmu, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Passed(Exception):
+        """The parameters that the run would have had."""
+
+    def run(_plant: Fmu, _controller: Fmu, *parameters: dict[str, Value], **_: object) -> Run:
+        raise Passed(*parameters)
+
+    monkeypatch.setattr("rps3_study.study.run_crossing", run)
+    refused = set()
+    for side, fmu in (("plant", plant), ("controller", controller)):
+        for name in fmu.names("parameter"):
+            variable = fmu.variables[name]
+            if variable.type == "Boolean":
+                value = float(variable.start != "true")
+            else:
+                value = float(variable.start) + (1.0 if variable.type == "Integer" else 1e-6)
+            axis = Axis(f"{side}.{name}", (value,))
+            try:
+                axis.check(plant, controller)
+            except ValueError:
+                refused.add(name)
+                continue
+            study = Study(samples=1, modes=(2,), spread=0.0, sensors=0.0, axes=(axis,))
+            with pytest.raises(Passed) as caught:
+                execute(plant, controller, study, 0)
+            actual, believed = caught.value.args
+            assert (actual if side == "plant" else believed)[name] == pytest.approx(value, rel=1e-9), axis.name
+    assert refused == set(SET_BY_STUDY)
 
 
 def test_axis_reads_lists_and_even_spacing() -> None:

@@ -1,9 +1,7 @@
-//! The core without FMI: right-hand side, solver, controller tick.
+//! The plant without FMI: right-hand side, solver.
 
 use std::hint::black_box;
 
-use rps3::control::{Controller, ControllerParameters, Mode, ReferencePoint, Tuning};
-use rps3::coupling::measure;
 use rps3::dynamics::solver::{Settings, Solver};
 use rps3::dynamics::{Inputs, NOMINAL, PlantModel, PlantParameters, PlantState, derivative};
 use serde_json::{Value, json};
@@ -45,24 +43,4 @@ pub fn solver_step(step: f64, tolerance: f64) -> anyhow::Result<Value> {
         outcome?;
     }
     Ok(json!({ "seconds": times, "evaluations": solver.evaluations as f64 / steps as f64 }))
-}
-
-/// Seconds of each of a hundred ticks in mode 4 near the singularity.
-pub fn tick(swarm_size: usize, iterations: usize) -> anyhow::Result<Vec<f64>> {
-    let mut parameters = ControllerParameters::default();
-    parameters.swarm.settings.swarm_size = swarm_size;
-    parameters.swarm.settings.max_iterations = iterations;
-    parameters.swarm.settings.stall_iterations = iterations;
-    let model = PlantModel::new(&PlantParameters::default());
-    let tuning = Tuning { mode: Mode::HdracMpso, ..Tuning::default() };
-    let external = ReferencePoint::default();
-    let mut controller = Controller::new(parameters)?;
-    let mut times = Vec::new();
-    for record in &record()?[450..550] {
-        let measured = measure(&model, &record.state, &inputs(record));
-        let mut outcome = None;
-        times.push(seconds(|| outcome = Some(controller.tick(record.time, &measured, &external, &tuning, true))));
-        outcome.transpose()?;
-    }
-    Ok(times)
 }

@@ -9,6 +9,7 @@ mod fmu;
 mod growth;
 mod pair;
 mod searches;
+mod tick;
 mod work_precision;
 
 use std::io::{BufRead, Write};
@@ -43,6 +44,8 @@ enum Request {
     Hours { minutes: usize },
     /// A controller tick with a swarm of this size and so many iterations.
     Tick { swarm_size: usize, iterations: usize },
+    /// Where the time of a controller tick with the default swarm goes.
+    TickParts { revolute_motors: bool },
     /// Seconds of a swarm's search, ours or another's.
     Search { optimizer: Optimizer, members: usize, budget: Budget, rounds: usize },
     /// Error, right-hand sides and time of each integrator at each tolerance.
@@ -66,7 +69,8 @@ fn answer(request: Request) -> anyhow::Result<Value> {
             growth::instances(&plant, &controller, count, threads)?
         }
         Request::Hours { minutes } => growth::long_run(minutes)?,
-        Request::Tick { swarm_size, iterations } => json!(dynamics::tick(swarm_size, iterations)?),
+        Request::Tick { swarm_size, iterations } => json!(tick::ticks(swarm_size, iterations)?),
+        Request::TickParts { revolute_motors } => tick::parts(revolute_motors)?,
         Request::Search { optimizer, members, budget, rounds } => {
             json!(searches::search(optimizer, members, budget, rounds)?)
         }
