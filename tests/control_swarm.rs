@@ -108,6 +108,7 @@ fn share_within(ratios: &[(f64, f64)]) -> f64 {
 #[test]
 fn six_motors_find_the_dense_grids_optimum_within_1_percent_in_99_percent_of_the_ticks() {
     let within = share_within(&ratios(true, 1, 1, (300, 60, 0)));
+    println!("six motors, within 1 %: {within}");
     assert!(within >= 0.99, "{within}");
 }
 
