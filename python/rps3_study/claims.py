@@ -30,7 +30,7 @@ TASKS = {
 }
 """Short names of the tasks."""
 PLATFORM = "platform coordinates"
-PLATFORM_VARIANTS = (PLATFORM, f"{PLATFORM}, lambda_f searched", f"{PLATFORM}, K_P 3600")
+SEARCHED, STIFF = f"{PLATFORM}, lambda_f searched", f"{PLATFORM}, K_P 3600"
 
 
 class Check(NamedTuple):
