@@ -29,13 +29,17 @@ pub(super) unsafe fn enter<M: Model>(
     // An unwound instance is poisoned, so that no half-done change is ever seen.
     match catch_unwind(AssertUnwindSafe(|| instance.call(function, body))) {
         Ok(status) => status,
-        Err(payload) => {
-            // Even the report may panic, in the payload's destructor; there is nobody left to tell.
-            let _ = catch_unwind(AssertUnwindSafe(|| instance.poison(function, panic_message(&*payload))));
-            let _ = catch_unwind(AssertUnwindSafe(|| drop(payload)));
-            Status::Fatal
-        }
+        Err(payload) => unwound(&mut instance, function, payload),
     }
+}
+
+#[cold]
+#[inline(never)]
+fn unwound<M: Model>(instance: &mut Instance<M>, function: Function, payload: Box<dyn Any + Send>) -> Status {
+    // Even the report may panic, in the payload's destructor; there is nobody left to tell.
+    let _ = catch_unwind(AssertUnwindSafe(|| instance.poison(function, panic_message(&*payload))));
+    let _ = catch_unwind(AssertUnwindSafe(|| drop(payload)));
+    Status::Fatal
 }
 
 /// The text of a panic.
@@ -83,35 +87,49 @@ pub(super) unsafe fn target<'a, T>(pointer: *mut T, name: &str) -> CallResult<&'
     Ok(unsafe { &mut *pointer })
 }
 
+#[inline]
 fn check_array<T>(pointer: *const T, length: usize, name: &str) -> CallResult {
-    if pointer.is_null() {
-        Err(CallError::Refused(format!("{name} is NULL")))
-    } else if !pointer.is_aligned() {
-        Err(CallError::Refused(format!("{name} is not aligned")))
-    } else if length > isize::MAX as usize / size_of::<T>() {
-        Err(CallError::Refused(format!("{name} cannot have {length} elements")))
+    let possible = !pointer.is_null() && pointer.is_aligned() && length <= isize::MAX as usize / size_of::<T>();
+    if possible { Ok(()) } else { Err(impossible_array(pointer.is_null(), pointer.is_aligned(), length, name)) }
+}
+
+#[cold]
+#[inline(never)]
+fn impossible_array(null: bool, aligned: bool, length: usize, name: &str) -> CallError {
+    CallError::Refused(if null {
+        format!("{name} is NULL")
+    } else if !aligned {
+        format!("{name} is not aligned")
     } else {
-        Ok(())
-    }
+        format!("{name} cannot have {length} elements")
+    })
 }
 
 /// An array that a caller passed, as an address, its length in bytes and its name.
 pub(super) type Array<'a> = (usize, usize, &'a str);
 
 /// What C passed as `pointer` and `length`.
+#[inline]
 pub(super) fn array<T>(pointer: *const T, length: usize, name: &str) -> Array<'_> {
     (pointer.addr(), length.saturating_mul(size_of::<T>()), name)
 }
 
 /// Refuses results that would be written over one of the arguments.
-pub(super) fn apart(results: Array, arguments: &[Array]) -> CallResult {
+#[inline]
+pub(super) fn apart<const N: usize>(results: Array, arguments: [Array; N]) -> CallResult {
     for argument in arguments {
-        let ((to, written, to_name), (from, read, from_name)) = (results, *argument);
+        let ((to, written, to_name), (from, read, from_name)) = (results, argument);
         if written > 0 && read > 0 && to < from.saturating_add(read) && from < to.saturating_add(written) {
-            return Err(CallError::Refused(format!("{to_name} and {from_name} overlap")));
+            return Err(overlap(to_name, from_name));
         }
     }
     Ok(())
+}
+
+#[cold]
+#[inline(never)]
+fn overlap(to_name: &str, from_name: &str) -> CallError {
+    CallError::Refused(format!("{to_name} and {from_name} overlap"))
 }
 
 /// A C string, `None` for null.

@@ -64,12 +64,23 @@ impl<M: Model> Instance<M> {
         if self.now.mode == Mode::Fatal {
             return Status::Fatal;
         }
-        let result = if function.is_legal(self.now.interface, self.now.mode) {
-            body(self)
-        } else {
-            Err(CallError::refused(format!("not allowed in {}", self.state_name())))
-        };
-        let Err(error) = result else { return Status::Ok };
+        let result =
+            if function.is_legal(self.now.interface, self.now.mode) { body(self) } else { Err(self.out_of_order()) };
+        match result {
+            Ok(()) => Status::Ok,
+            Err(error) => self.report(function, &error),
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn out_of_order(&self) -> CallError {
+        CallError::refused(format!("not allowed in {}", self.state_name()))
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn report(&mut self, function: Function, error: &CallError) -> Status {
         if let CallError::Failed(_) = error {
             self.now.mode = Mode::Error;
         }
