@@ -89,7 +89,7 @@ def pinocchio() -> Path | None:
 
 
 def c_fmu(name: str) -> Path | None:
-    """The library of an FMU in C that does next to nothing: `minimal_fmu`, or `checked_fmu` with the checks of ours."""
+    """The library of an FMU in C that does next to nothing: `minimal_fmu`, or `checked_fmu` with checks like ours."""
     headers = Path(fmpy.__file__).parent / "c-code"
     # where the functions and loops of so short calls begin in a line of the cache takes them up to twice the time
     aligned = ("-falign-functions=64", "-falign-loops=32")

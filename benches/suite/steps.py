@@ -51,11 +51,11 @@ def step(native: Native, plant: Fmu, rounds: int) -> tuple[list[Row], Listing]:
     return rows, Listing("communication-step", head, cells)
 
 
-C_FMUS = {"minimal_fmu": "minimal C FMU", "checked_fmu": "C FMU with the same checks"}
+C_FMUS = {"minimal_fmu": "minimal C FMU", "checked_fmu": "C FMU with like checks"}
 
 
 def calls(native: Native, plant: Fmu, controller: Fmu, rounds: int) -> list[Row]:
-    """GetReal, SetReal and an empty DoStep against the least that an FMU can do, without checks and with ours."""
+    """GetReal, SetReal and an empty DoStep against the least that an FMU can do, without checks and with like ones."""
     libraries = {name: peers.c_fmu(name) for name in C_FMUS}
     if None in libraries.values():
         return []
