@@ -1,4 +1,4 @@
-/* minimal_fmu.c with the checks of ours, written as in a C FMU: it knows its components, refuses calls on a busy
+/* minimal_fmu.c with checks like ours, written as in a C FMU: it knows its components, refuses calls on a busy
  * instance or in the wrong state, arrays that are NULL or overlap, and values that may not be set now or are beyond
  * their limits, before anything is changed. Compiled against the headers that FMPy ships. */
 
