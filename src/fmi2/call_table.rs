@@ -36,8 +36,6 @@ pub struct Modes(u16);
 impl Modes {
     /// No mode at all.
     pub const NONE: Self = Self(0);
-    /// Every mode.
-    pub const ALL: Self = Self(u16::MAX);
 
     /// The set of `modes`.
     pub const fn of(modes: &[Mode]) -> Self {
@@ -53,11 +51,6 @@ impl Modes {
     /// Modes of either set.
     pub const fn and(self, other: Self) -> Self {
         Self(self.0 | other.0)
-    }
-
-    /// Modes of both sets.
-    pub const fn both(self, other: Self) -> Self {
-        Self(self.0 & other.0)
     }
 
     /// Whether `mode` is in the set.

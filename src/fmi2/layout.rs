@@ -44,7 +44,8 @@ pub struct Table {
     pub entries: Vec<Entry>,
     /// By value reference: these are small numbers, and hosts ask for dozens a step.
     places: Vec<Place>,
-    gates: Gates,
+    /// By slot.
+    gates: Vec<Gate>,
 }
 
 /// Where a value reference leads.
@@ -55,16 +56,17 @@ struct Place {
     run: u32,
 }
 
-/// What a value must pass to be set by no more than a copy, in columns, of which the processor compares several
-/// rows at once.
-#[derive(Debug, Clone, Default)]
-struct Gates {
-    /// As [`Entry::settable`]; nowhere for states, which the model has to be told of.
-    settable: Vec<Modes>,
+/// What a value must pass to be set by no more than a copy.
+#[derive(Debug, Clone, Copy)]
+struct Gate {
     /// As [`Entry::min`], but finite, so that infinities are below.
-    min: Vec<f64>,
+    min: f64,
     /// As [`Entry::max`], but finite.
-    max: Vec<f64>,
+    max: f64,
+    /// As [`Entry::settable`]; nowhere for states, which the model has to be told of.
+    settable: Modes,
+    /// How many slots from this one on have the same gate.
+    alike: u32,
 }
 
 impl Table {
@@ -93,14 +95,14 @@ impl Table {
         Ok(())
     }
 
-    /// Whether `values` may be copied into `slots` in `mode`: variables other than states, settable, the values finite
-    /// and within their limits.
+    /// Whether `values` may be copied into `slots` in `mode`: variables other than states, with the same gate, settable,
+    /// the values finite and within their limits.
     #[inline]
     pub fn admits(&self, slots: &Range<usize>, values: &[f64], mode: Mode) -> bool {
-        let (min, max) = (&self.gates.min[slots.clone()], &self.gates.max[slots.clone()]);
-        let within = |all, ((value, min), max)| all & (min <= value) & (value <= max);
-        self.gates.settable[slots.clone()].iter().fold(Modes::ALL, |all, modes| all.both(*modes)).contains(mode)
-            && values.iter().zip(min).zip(max).fold(true, within)
+        let Gate { min, max, settable, alike } = self.gates[slots.start];
+        // without an early end, so that several are compared at once
+        let within = |all, value: &f64| all & (min <= *value) & (*value <= max);
+        values.len() <= alike as usize && settable.contains(mode) && values.iter().fold(true, within)
     }
 
     fn new(definition: &Definition, variable_type: VariableType) -> Self {
@@ -119,12 +121,22 @@ impl Table {
                 place.run += next.run;
             }
         }
-        let gates = Gates {
-            settable: entries.iter().map(|e| if e.state.is_some() { Modes::NONE } else { e.settable }).collect(),
-            min: entries.iter().map(|e| e.min.max(f64::MIN)).collect(),
-            max: entries.iter().map(|e| e.max.min(f64::MAX)).collect(),
-        };
+        let mut gates: Vec<Gate> = entries.iter().map(Gate::new).collect();
+        for slot in (1..gates.len()).rev() {
+            let next = gates[slot];
+            let gate = &mut gates[slot - 1];
+            if (gate.min, gate.max, gate.settable) == (next.min, next.max, next.settable) {
+                gate.alike += next.alike;
+            }
+        }
         Self { entries, places, gates }
+    }
+}
+
+impl Gate {
+    fn new(entry: &Entry) -> Self {
+        let settable = if entry.state.is_some() { Modes::NONE } else { entry.settable };
+        Self { min: entry.min.max(f64::MIN), max: entry.max.min(f64::MAX), settable, alike: 1 }
     }
 }
 
