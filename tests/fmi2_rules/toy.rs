@@ -27,8 +27,9 @@ pub mod real {
     pub const A: u32 = 11;
     pub const Y: u32 = 13;
     pub const HELD: u32 = 14;
-    pub const K: u32 = 20;
-    pub const C: u32 = 21;
+    pub const C: u32 = 20;
+    // parameters that follow each other, with limits and without
+    pub const K: u32 = 21;
     pub const X_START: u32 = 22;
     pub const GAIN: u32 = 23;
 }
@@ -65,8 +66,8 @@ mod slot {
     pub const A: usize = 5;
     pub const Y: usize = 6;
     pub const HELD: usize = 7;
-    pub const K: usize = 8;
-    pub const C: usize = 9;
+    pub const C: usize = 8;
+    pub const K: usize = 9;
     pub const X_START: usize = 10;
     pub const TICKS: usize = 0;
     pub const TROUBLE: usize = 2;
@@ -105,8 +106,8 @@ fn definition() -> Definition {
             Variable::real("a", real::A, Some("m/s2"), "Acceleration").derivative_of("v"),
             Variable::real("y", real::Y, None, "Feed-through x + u").output(),
             Variable::real("held", real::HELD, Some("N"), "Sampled u").output().discrete(),
-            Variable::real("k", real::K, None, "Stiffness").parameter().start(4.0).range(0.0, f64::INFINITY),
             Variable::real("c", real::C, None, "Damping").tunable().start(0.1).range(0.0, f64::INFINITY),
+            Variable::real("k", real::K, None, "Stiffness").parameter().start(4.0).range(0.0, f64::INFINITY),
             Variable::real("x_start", real::X_START, Some("m"), "Initial position").parameter().start(1.0),
             gain,
             Variable::integer("ticks", integer::TICKS, "Samples taken").output(),
