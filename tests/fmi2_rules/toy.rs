@@ -28,9 +28,9 @@ pub mod real {
     pub const Y: u32 = 13;
     pub const HELD: u32 = 14;
     pub const C: u32 = 20;
-    // parameters that follow each other, with limits and without
-    pub const K: u32 = 21;
-    pub const X_START: u32 = 22;
+    // parameters that follow each other, without limits and with
+    pub const X_START: u32 = 21;
+    pub const K: u32 = 22;
     pub const GAIN: u32 = 23;
 }
 
@@ -67,8 +67,8 @@ mod slot {
     pub const Y: usize = 6;
     pub const HELD: usize = 7;
     pub const C: usize = 8;
-    pub const K: usize = 9;
-    pub const X_START: usize = 10;
+    pub const X_START: usize = 9;
+    pub const K: usize = 10;
     pub const TICKS: usize = 0;
     pub const TROUBLE: usize = 2;
     pub const POSITIVE: usize = 1;
@@ -107,8 +107,8 @@ fn definition() -> Definition {
             Variable::real("y", real::Y, None, "Feed-through x + u").output(),
             Variable::real("held", real::HELD, Some("N"), "Sampled u").output().discrete(),
             Variable::real("c", real::C, None, "Damping").tunable().start(0.1).range(0.0, f64::INFINITY),
-            Variable::real("k", real::K, None, "Stiffness").parameter().start(4.0).range(0.0, f64::INFINITY),
             Variable::real("x_start", real::X_START, Some("m"), "Initial position").parameter().start(1.0),
+            Variable::real("k", real::K, None, "Stiffness").parameter().start(4.0).range(0.0, f64::INFINITY),
             gain,
             Variable::integer("ticks", integer::TICKS, "Samples taken").output(),
             Variable::integer("selector", integer::SELECTOR, "Discrete input").input().start_integer(0),
