@@ -96,13 +96,13 @@ fn check_array<T>(pointer: *const T, length: usize, name: &str) -> CallResult {
 #[cold]
 #[inline(never)]
 fn impossible_array(null: bool, aligned: bool, length: usize, name: &str) -> CallError {
-    CallError::Refused(if null {
-        format!("{name} is NULL")
+    if null {
+        CallError::Refused(format!("{name} is NULL"))
     } else if !aligned {
-        format!("{name} is not aligned")
+        CallError::Refused(format!("{name} is not aligned"))
     } else {
-        format!("{name} cannot have {length} elements")
-    })
+        CallError::Refused(format!("{name} cannot have {length} elements"))
+    }
 }
 
 /// An array that a caller passed, as an address, its length in bytes and its name.
