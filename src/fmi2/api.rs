@@ -245,9 +245,12 @@ on_instance! {
         seed: *const f64, derivative: *mut f64
     ) as GetDirectionalDerivative {
         let results = array(derivative, unknown_count, "dvUnknown");
-        let references = [array(unknowns, unknown_count, "vUnknown_ref"), array(knowns, known_count, "vKnown_ref")];
-        apart(results, references)?;
-        apart(results, [array(seed, known_count, "dvKnown")])?;
+        let arguments = [
+            array(unknowns, unknown_count, "vUnknown_ref"),
+            array(knowns, known_count, "vKnown_ref"),
+            array(seed, known_count, "dvKnown"),
+        ];
+        apart(results, arguments)?;
         instance.get_directional_derivative(
             slice(unknowns, unknown_count, "vUnknown_ref")?,
             slice(knowns, known_count, "vKnown_ref")?,

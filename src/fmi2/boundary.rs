@@ -34,7 +34,6 @@ pub(super) unsafe fn enter<M: Model>(
 }
 
 #[cold]
-#[inline(never)]
 fn unwound<M: Model>(instance: &mut Instance<M>, function: Function, payload: Box<dyn Any + Send>) -> Status {
     // Even the report may panic, in the payload's destructor; there is nobody left to tell.
     let _ = catch_unwind(AssertUnwindSafe(|| instance.poison(function, panic_message(&*payload))));
@@ -94,7 +93,6 @@ fn check_array<T>(pointer: *const T, length: usize, name: &str) -> CallResult {
 }
 
 #[cold]
-#[inline(never)]
 fn impossible_array(null: bool, aligned: bool, length: usize, name: &str) -> CallError {
     if null {
         CallError::Refused(format!("{name} is NULL"))
@@ -127,7 +125,6 @@ pub(super) fn apart<const N: usize>(results: Array, arguments: [Array; N]) -> Ca
 }
 
 #[cold]
-#[inline(never)]
 fn overlap(to_name: &str, from_name: &str) -> CallError {
     CallError::Refused(format!("{to_name} and {from_name} overlap"))
 }

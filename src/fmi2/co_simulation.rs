@@ -22,12 +22,6 @@ fn time_tolerance(time: f64, step: f64) -> f64 {
     1e-6 * step + 64.0 * f64::EPSILON * time.abs()
 }
 
-#[cold]
-#[inline(never)]
-fn refuse<T>(why: std::fmt::Arguments) -> CallResult<T> {
-    Err(CallError::Refused(why.to_string()))
-}
-
 impl<M: Model> Instance<M> {
     /// `fmi2DoStep`: from the instance's own time to exactly `point + step`.
     pub(super) fn do_step(&mut self, point: f64, step: f64) -> CallResult {
@@ -42,7 +36,6 @@ impl<M: Model> Instance<M> {
     }
 
     /// The step itself; if it fails, model and values are as before.
-    #[inline(never)] // away from the short way of a step in which nothing happens
     fn advance(&mut self, from: f64, to: f64) -> CallResult {
         self.back_up();
         let Snapshot { model, values, input_derivatives, .. } = &mut self.now;
@@ -64,27 +57,28 @@ impl<M: Model> Instance<M> {
 
     /// Start and end of the step that the host asks for.
     fn check_step(&self, point: f64, step: f64) -> CallResult<(f64, f64)> {
+        let refuse = |message: String| Err(CallError::Refused(message));
         let from = self.now.time;
         if !(step.is_finite() && step > 0.0) {
-            return refuse(format_args!("communication step size {step:?} s is not positive and finite"));
+            return refuse(format!("communication step size {step:?} s is not positive and finite"));
         }
         if step > MAX_STEP {
-            return refuse(format_args!("communication step size {step:?} s is larger than {MAX_STEP:?} s"));
+            return refuse(format!("communication step size {step:?} s is larger than {MAX_STEP:?} s"));
         }
         let tolerance = time_tolerance(from, step);
         if !point.is_finite() || (point - from).abs() > tolerance {
-            return refuse(format_args!("communication point {point:?} s is not the current time {from:?} s"));
+            return refuse(format!("communication point {point:?} s is not the current time {from:?} s"));
         }
         let to = point + step;
         if to <= from || to.abs() > MAX_TIME {
-            return refuse(format_args!("a step of {step:?} s from {point:?} s is beyond the resolution of time"));
+            return refuse(format!("a step of {step:?} s from {point:?} s is beyond the resolution of time"));
         }
         if let Some(experiment) = self.now.experiment
             && let Some(stop) = experiment.stop_time
         {
             let overshoot = STOP_TIME_OVERSHOOT * (stop - experiment.start_time);
             if from > stop + tolerance || to > stop + overshoot + tolerance {
-                return refuse(format_args!("a step to {to:?} s is past the stop time {stop:?} s"));
+                return refuse(format!("a step to {to:?} s is past the stop time {stop:?} s"));
             }
         }
         Ok((from, to))

@@ -73,13 +73,11 @@ impl<M: Model> Instance<M> {
     }
 
     #[cold]
-    #[inline(never)]
     fn out_of_order(&self) -> CallError {
         CallError::refused(format!("not allowed in {}", self.state_name()))
     }
 
     #[cold]
-    #[inline(never)]
     fn report(&mut self, function: Function, error: &CallError) -> Status {
         if let CallError::Failed(_) = error {
             self.now.mode = Mode::Error;

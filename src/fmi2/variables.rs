@@ -20,7 +20,6 @@ pub(super) fn slot(table: &Table, type_name: &str, reference: ValueReference) ->
 }
 
 #[cold]
-#[inline(never)]
 fn no_such_variable(type_name: &str, reference: ValueReference) -> CallError {
     CallError::Refused(format!("there is no {type_name} variable with value reference {reference}"))
 }

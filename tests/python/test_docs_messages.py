@@ -6,7 +6,7 @@ from conftest import ROOT
 
 SOURCES = ["src/fmi2", "src/models", "src/dynamics", "src/control"]
 MESSAGE = re.compile(
-    r"""(?: \#\[error\( | refused?\(\s*(?:format(?:_args)?!\()? | let\ message\ =\ format!\(
+    r"""(?: \#\[error\( | refused?\(\s*(?:format!\()? | let\ message\ =\ format!\(
         | event\( | warning\(\s*(?:&format!\()?
         | (?:Refused|Warned|Failed|Discard|NoSuchStatus|ModelError::Error)\(\s*(?:format!\()? )
         \s*"((?:[^"\\]|\\.|\\\n)*)" """,
