@@ -159,12 +159,12 @@ fn deceleration_region_ends_at_its_width() {
 #[test]
 fn a_changing_rho_adds_to_the_lyapunov_functions_rate() {
     // (5.2) with pose and rates held, so that all of (5.4) but the missing term vanishes
-    let at = situation(Vector3::new(0.05, 0.1, 0.1), Vector3::new(-0.1, 0.3, 0.2), Vector3::zeros(), &GAINS);
+    let at = situation(Vector3::new(0.05, 0.1, 0.1), Vector3::new(-0.2, 0.6, 0.4), Vector3::zeros(), &GAINS);
     let (rho, rho_dot, step) = (0.2, 3.0, 1e-6);
     let l = |time: f64| lyapunov(&at, &GAINS, rho + rho_dot * time);
     let rate = (l(step) - l(-step)) / (2.0 * step);
     let missing = rho * rho_dot * at.twist.norm_squared();
-    assert!((rate - missing).abs() < 1e-9 && missing > 0.001, "{rate} {missing}");
+    assert!((rate - missing).abs() < 1e-9 && missing > 0.01, "{rate} {missing}");
     // and the rate by (5.5) does not see it
     let before = lyapunov_rate(&at, &GAINS, rho, 0.0);
     assert!((lyapunov_rate(&at, &GAINS, rho + 0.1, 0.0) - before).abs() < 1e-12, "without rho_hd, rho plays no part");

@@ -171,6 +171,7 @@ fn distance_plays_a_part_by_its_decay_scale_and_errors_by_their_order_alone() {
     };
     // Error ranks differ by one, distance ranks by at most 39: below 1 / 39 distance overrules no error.
     assert_eq!(search(0.0, 1.0), search(0.02, 1.0));
+    assert_eq!(search(0.0, 1.0), search(0.0, 1024.0));
     assert_ne!(search(0.02, 1.0), search(0.7, 1.0));
     assert_eq!(search(0.7, 1.0), search(0.7, 1024.0), "ranks see the order of errors, not their size");
 }
