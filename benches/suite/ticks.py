@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from rps3_study.tasks import VARIANTS
+
 from suite.peers import Native
 from suite.table import Listing, Row, duration
 
@@ -14,7 +16,6 @@ PARTS = {
     "evaluations": "fitness of each damping",
     "moves": "swarm: moves and ranks",
 }
-VARIANTS = {"six motors": True, "three motors": False}
 
 
 def measure(native: Native, rounds: int) -> tuple[list[Row], Listing]:

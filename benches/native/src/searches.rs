@@ -15,7 +15,7 @@ use rps3::control::mpso::{Bounds, Selection, Settings, Swarm};
 use serde::Deserialize;
 
 use crate::argmin_problem::{Bowl, Point, bowl};
-use crate::seconds;
+use crate::timed;
 
 const LOWER: f64 = -1.0;
 const UPPER: f64 = 1.5;
@@ -92,7 +92,6 @@ where
 
 /// Seconds of `work`, the mean of `rounds`.
 fn mean(rounds: usize, mut work: impl FnMut() -> Result<()>) -> Result<f64> {
-    let mut outcome = Ok(());
-    let elapsed = seconds(|| outcome = (0..rounds).try_for_each(|_| work()));
+    let (elapsed, outcome) = timed(|| (0..rounds).try_for_each(|_| work()));
     outcome.map(|()| elapsed / rounds as f64)
 }

@@ -4,9 +4,6 @@ use std::hint::black_box;
 
 use anyhow::Result;
 use nalgebra::Vector3;
-use rand_xoshiro::Xoshiro256PlusPlus;
-use rand_xoshiro::rand_core::SeedableRng;
-use rps3::control::mpso::{Bounds, Settings, Swarm};
 use rps3::control::{
     Controller, ControllerParameters, Estimator, Fitness, ForceDistribution, Mode, Reference, ReferencePoint,
     SingularBasis, Situation, Tuning,
@@ -15,9 +12,9 @@ use rps3::coupling::{Record, measure};
 use rps3::dynamics::{PlantModel, PlantParameters};
 use serde_json::{Value, json};
 
-use crate::argmin_problem::bowl;
 use crate::crossing::{inputs, record};
-use crate::seconds;
+use crate::searches::{Budget, Optimizer, search};
+use crate::timed;
 
 /// Ticks of the recorded run that are measured.
 const TICKS: std::ops::Range<usize> = 450..550;
@@ -40,9 +37,9 @@ fn measured_ticks(records: &[Record], parameters: ControllerParameters) -> Resul
     let (mut times, mut iterations) = (Vec::new(), Vec::new());
     for record in records {
         let measured = measure(&model, &record.state, &inputs(record));
-        let mut outcome = None;
-        times.push(seconds(|| outcome = Some(controller.tick(record.time, &measured, &external, &tuning, true))));
-        iterations.extend(outcome.transpose()?.map(|diagnostics| diagnostics.iterations));
+        let (time, diagnostics) = timed(|| controller.tick(record.time, &measured, &external, &tuning, true));
+        times.push(time);
+        iterations.push(diagnostics?.iterations);
     }
     Ok((times, iterations))
 }
@@ -60,9 +57,11 @@ pub fn parts(revolute_motors: bool) -> Result<Value> {
     let size = parameters.swarm.settings.swarm_size;
     let mut parts = Parts::default();
     let mut estimator = Estimator::of(&parameters);
-    for (record, iterations) in records.iter().zip(&iterations) {
+    for (record, iterations) in records.iter().zip(iterations) {
         parts.add(record, &parameters, &mut estimator, size * (1 + iterations));
-        parts.moves += moves(size, *iterations, revolute_motors)?;
+        // on next to nothing, which leaves moves and ranks
+        let budget = Budget { swarm_size: size, iterations };
+        parts.moves += search(Optimizer::Mpso, if revolute_motors { 2 } else { 3 }, budget, 1)?;
     }
     let mean = |sum: f64| sum / records.len() as f64;
     Ok(json!({
@@ -119,24 +118,4 @@ impl Parts {
         });
         self.evaluations += time;
     }
-}
-
-/// Seconds of a search of so many iterations on next to nothing: moves and ranks.
-fn moves(swarm_size: usize, iterations: usize, revolute_motors: bool) -> Result<f64> {
-    fn search<const D: usize>(settings: Settings) -> Result<f64> {
-        let mut swarm = Swarm::new(Bounds::new([-1.0; D], [1.5; D])?, settings)?;
-        let mut rng = Xoshiro256PlusPlus::seed_from_u64(1);
-        Ok(timed(|| black_box(swarm.minimize(&mut rng, &[], |x| bowl(x)))).0)
-    }
-    let iterations = iterations.max(1);
-    let settings =
-        Settings { swarm_size, max_iterations: iterations, stall_iterations: iterations, ..Settings::default() };
-    if revolute_motors { search::<2>(settings) } else { search::<3>(settings) }
-}
-
-/// Seconds of `work`, and what it gives.
-fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
-    let mut result = None;
-    let time = seconds(|| result = Some(black_box(work())));
-    (time, result.expect("the work was done"))
 }
