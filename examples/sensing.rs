@@ -66,19 +66,13 @@ struct Foreign {
     rate_noise: (f64, f64),
 }
 
+const NONE: Foreign = Foreign { name: "none", angles: 0.0, length_rates: 0.0, rate_noise: (0.0, 0.0) };
 const FOREIGN: [Foreign; 4] = [
-    Foreign { name: "none", angles: 0.0, length_rates: 0.0, rate_noise: (0.0, 0.0) },
-    Foreign { name: "angles off by up to 0.1 deg", angles: 0.1 * DEGREE, length_rates: 0.0, rate_noise: (0.0, 0.0) },
-    Foreign { name: "length rates off by up to 1 mm/s", angles: 0.0, length_rates: 1e-3, rate_noise: (0.0, 0.0) },
-    Foreign {
-        name: "noise of rates up to 20 mm/s, 0.1 rad/s",
-        angles: 0.0,
-        length_rates: 0.0,
-        rate_noise: (0.02, 0.1),
-    },
+    NONE,
+    Foreign { name: "angles off by up to 0.1 deg", angles: 0.1_f64.to_radians(), ..NONE },
+    Foreign { name: "length rates off by up to 1 mm/s", length_rates: 1e-3, ..NONE },
+    Foreign { name: "noise of rates up to 20 mm/s, 0.1 rad/s", rate_noise: (0.02, 0.1), ..NONE },
 ];
-
-const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
 impl Foreign {
     /// With static errors drawn from `rng`, from which the noise comes as well.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from rps3_study.couple import Run
@@ -73,7 +73,5 @@ def compare(variant: str, run: Callable[[dict[str, Value]], Run], peak_error: Ca
         error = peak_error(run({"control_mode": HDRAC, **factors, **gains}))
         tried.append(Fixed(error, rho, delta_hd, lambda_f, k_p))
 
-    def best(candidates: Iterable[Fixed]) -> Fixed:
-        return min(candidates, key=lambda fixed: fixed.peak_error)
-
-    return Comparison(seeds, best(fixed for fixed in tried if fixed.k_p == K_P[0]), best(tried))
+    tried.sort(key=lambda fixed: fixed.peak_error)
+    return Comparison(seeds, next(fixed for fixed in tried if fixed.k_p == K_P[0]), tried[0])
