@@ -22,6 +22,15 @@ fn time_tolerance(time: f64, step: f64) -> f64 {
     1e-6 * step + 64.0 * f64::EPSILON * time.abs()
 }
 
+/// Why a step cannot be made.
+enum StepFault {
+    Size,
+    ElsewhereInTime,
+    BeyondResolution,
+    /// The stop time, seconds.
+    PastStopTime(f64),
+}
+
 impl<M: Model> Instance<M> {
     /// `fmi2DoStep`: from the instance's own time to exactly `point + step`.
     pub(super) fn do_step(&mut self, point: f64, step: f64) -> CallResult {
@@ -57,31 +66,51 @@ impl<M: Model> Instance<M> {
 
     /// Start and end of the step that the host asks for.
     fn check_step(&self, point: f64, step: f64) -> CallResult<(f64, f64)> {
-        let refuse = |message: String| Err(CallError::Refused(message));
-        let from = self.now.time;
-        if !(step.is_finite() && step > 0.0) {
-            return refuse(format!("communication step size {step:?} s is not positive and finite"));
-        }
-        if step > MAX_STEP {
-            return refuse(format!("communication step size {step:?} s is larger than {MAX_STEP:?} s"));
+        let refuse = |fault| Err(self.impossible(fault, point, step));
+        let (from, to) = (self.now.time, point + step);
+        // no comparison with what is not a number is true
+        let proper = 0.0 < step && step <= MAX_STEP;
+        if !proper {
+            return refuse(StepFault::Size);
         }
         let tolerance = time_tolerance(from, step);
-        if !point.is_finite() || (point - from).abs() > tolerance {
-            return refuse(format!("communication point {point:?} s is not the current time {from:?} s"));
+        let here = (point - from).abs() <= tolerance;
+        if !here {
+            return refuse(StepFault::ElsewhereInTime);
         }
-        let to = point + step;
         if to <= from || to.abs() > MAX_TIME {
-            return refuse(format!("a step of {step:?} s from {point:?} s is beyond the resolution of time"));
+            return refuse(StepFault::BeyondResolution);
         }
         if let Some(experiment) = self.now.experiment
             && let Some(stop) = experiment.stop_time
         {
             let overshoot = STOP_TIME_OVERSHOOT * (stop - experiment.start_time);
             if from > stop + tolerance || to > stop + overshoot + tolerance {
-                return refuse(format!("a step to {to:?} s is past the stop time {stop:?} s"));
+                return refuse(StepFault::PastStopTime(stop));
             }
         }
         Ok((from, to))
+    }
+
+    #[cold]
+    fn impossible(&self, fault: StepFault, point: f64, step: f64) -> CallError {
+        let from = self.now.time;
+        CallError::Refused(match fault {
+            StepFault::Size if step.is_finite() && step > 0.0 => {
+                format!("communication step size {step:?} s is larger than {MAX_STEP:?} s")
+            }
+            StepFault::Size => format!("communication step size {step:?} s is not positive and finite"),
+            StepFault::ElsewhereInTime => {
+                format!("communication point {point:?} s is not the current time {from:?} s")
+            }
+            StepFault::BeyondResolution => {
+                format!("a step of {step:?} s from {point:?} s is beyond the resolution of time")
+            }
+            StepFault::PastStopTime(stop) => {
+                let to = point + step;
+                format!("a step to {to:?} s is past the stop time {stop:?} s")
+            }
+        })
     }
 
     /// `fmi2SetRealInputDerivatives`: all or nothing.

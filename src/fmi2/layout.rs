@@ -1,8 +1,7 @@
 //! What the layer needs to know of a definition, by value reference and slot.
 
-use std::ops::Range;
-
 use super::call_table::{Mode, Modes};
+use super::spans::{Span, Spans};
 use crate::description::{Causality, Definition, Initial, Kind, Unknown, Variability, Variable, VariableType};
 
 /// A variable as the layer sees it.
@@ -38,105 +37,85 @@ pub struct Entry {
     pub may_be_missing: bool,
 }
 
-/// The variables of one base type, by slot.
-#[derive(Debug, Clone, Default)]
+/// The variables of one base type.
+#[derive(Debug, Clone)]
 pub struct Table {
-    pub entries: Vec<Entry>,
-    /// By value reference: these are small numbers, and hosts ask for dozens a step.
-    places: Vec<Place>,
     /// By slot.
-    gates: Vec<Gate>,
-}
-
-/// Where a value reference leads.
-#[derive(Debug, Clone, Copy)]
-struct Place {
-    slot: u32,
-    /// How many references from this one on lead to slots that follow each other; zero where there is no variable.
-    run: u32,
+    pub entries: Vec<Entry>,
+    spans: Spans<()>,
+    gates: Spans<Gate>,
 }
 
 /// What a value must pass to be set by no more than a copy.
-#[derive(Debug, Clone, Copy)]
-struct Gate {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gate {
     /// As [`Entry::min`], but finite, so that infinities are below.
     min: f64,
     /// As [`Entry::max`], but finite.
     max: f64,
     /// As [`Entry::settable`]; nowhere for states, which the model has to be told of.
     settable: Modes,
-    /// How many slots from this one on have the same gate.
-    alike: u32,
 }
 
 impl Table {
     /// The slot behind a value reference.
     #[inline]
     pub fn slot(&self, reference: u32) -> Option<usize> {
-        self.places.get(reference as usize).filter(|place| place.run > 0).map(|place| place.slot as usize)
+        self.spans.of(reference).map(|(span, ())| span.slots().start + span.place(reference))
     }
 
-    /// The slots behind `references` if these follow each other and so do the slots, as those of most requests do.
+    /// The variables around the one behind `reference` that have the same gate.
     #[inline]
-    pub fn run(&self, references: &[u32]) -> Option<Range<usize>> {
-        let first = *references.first()?;
-        let Place { slot, run } = *self.places.get(first as usize)?;
-        // without an early end, so that several are compared at once
-        let follow = |differences, (reference, expected)| differences | (reference ^ expected);
-        let run = references.len() <= run as usize && references.iter().zip(first..).fold(0, follow) == 0;
-        run.then(|| slot as usize..slot as usize + references.len())
+    pub fn gate(&self, reference: u32) -> Option<&(Span, Gate)> {
+        self.gates.of(reference)
     }
 
-    /// Copies the `values` behind `references` one by one; the error is a reference behind which there is none.
-    pub fn gather(&self, values: &[f64], references: &[u32], out: &mut [f64]) -> Result<(), u32> {
-        for (&reference, out) in references.iter().zip(out) {
-            *out = values[self.slot(reference).ok_or(reference)?];
+    /// Copies the `values` behind `references`; the error is a reference behind which there is none.
+    #[inline]
+    pub fn read(&self, values: &[f64], references: &[u32], out: &mut [f64]) -> Result<(), u32> {
+        let Some(&first) = references.first() else { return Ok(()) };
+        let (span, ()) = self.spans.of(first).ok_or(first)?;
+        if let Some(slots) = span.run(references) {
+            out.copy_from_slice(&values[slots]);
+            return Ok(());
+        }
+        self.gather(values, references, out)
+    }
+
+    /// As [`read`](Self::read), one by one.
+    #[inline(never)] // within `read` either would get too few registers
+    fn gather(&self, values: &[f64], references: &[u32], out: &mut [f64]) -> Result<(), u32> {
+        let mut done = 0;
+        while let Some(&reference) = references.get(done) {
+            let (span, ()) = self.spans.of(reference).ok_or(reference)?;
+            done += span.gather(&values[span.slots()], &references[done..], &mut out[done..]);
         }
         Ok(())
-    }
-
-    /// Whether `values` may be copied into `slots` in `mode`: variables other than states, with the same gate, settable,
-    /// the values finite and within their limits.
-    #[inline]
-    pub fn admits(&self, slots: &Range<usize>, values: &[f64], mode: Mode) -> bool {
-        let Gate { min, max, settable, alike } = self.gates[slots.start];
-        // without an early end, so that several are compared at once
-        let within = |all, value: &f64| all & (min <= *value) & (*value <= max);
-        values.len() <= alike as usize && settable.contains(mode) && values.iter().fold(true, within)
     }
 
     fn new(definition: &Definition, variable_type: VariableType) -> Self {
         let variables = definition.variables.iter().enumerate().filter(|(_, v)| v.variable_type() == variable_type);
         let mut inputs = 0;
         let entries: Vec<Entry> = variables.clone().map(|(i, v)| entry(definition, i, v, &mut inputs)).collect();
-        let largest = variables.clone().map(|(_, v)| v.value_reference).max();
-        let mut places = vec![Place { slot: 0, run: 0 }; largest.map_or(0, |reference| reference as usize + 1)];
-        for (slot, (_, v)) in (0..).zip(variables) {
-            places[v.value_reference as usize] = Place { slot, run: 1 };
-        }
-        for reference in (1..places.len()).rev() {
-            let next = places[reference];
-            let place = &mut places[reference - 1];
-            if place.run > 0 && next.run > 0 && next.slot == place.slot + 1 {
-                place.run += next.run;
-            }
-        }
-        let mut gates: Vec<Gate> = entries.iter().map(Gate::new).collect();
-        for slot in (1..gates.len()).rev() {
-            let next = gates[slot];
-            let gate = &mut gates[slot - 1];
-            if (gate.min, gate.max, gate.settable) == (next.min, next.max, next.settable) {
-                gate.alike += next.alike;
-            }
-        }
-        Self { entries, places, gates }
+        let references = variables.map(|(_, v)| v.value_reference);
+        let spans = Spans::new(references.clone().map(|reference| (reference, ())));
+        let gates = Spans::new(references.zip(entries.iter().map(Gate::new)));
+        Self { entries, spans, gates }
     }
 }
 
 impl Gate {
     fn new(entry: &Entry) -> Self {
         let settable = if entry.state.is_some() { Modes::NONE } else { entry.settable };
-        Self { min: entry.min.max(f64::MIN), max: entry.max.min(f64::MAX), settable, alike: 1 }
+        Self { min: entry.min.max(f64::MIN), max: entry.max.min(f64::MAX), settable }
+    }
+
+    /// Whether all `values` may pass in `mode`.
+    #[inline]
+    pub fn admits(&self, values: &[f64], mode: Mode) -> bool {
+        // without an early end, so that several are compared at once
+        let within = |all, &value: &f64| all & (self.min <= value) & (value <= self.max);
+        self.settable.contains(mode) && values.iter().fold(true, within)
     }
 }
 

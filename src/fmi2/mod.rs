@@ -28,6 +28,7 @@ mod lifecycle;
 mod logger;
 mod model;
 mod model_exchange;
+mod spans;
 mod state;
 mod state_bytes;
 pub mod types;

@@ -70,18 +70,18 @@ impl Layout {
 impl<M: Model> Instance<M> {
     /// `fmi2GetReal`
     pub(super) fn get_real(&mut self, references: &[ValueReference], out: &mut [f64]) -> CallResult {
-        self.bring_up_to_date(|layout| &layout.reals, "Real", references, true)?;
-        let (table, values) = (&self.layout.reals, &self.now.values.reals[..]);
-        if let Some(slots) = table.run(references) {
-            out.copy_from_slice(&values[slots]);
-            return Ok(());
+        if self.now.stale {
+            self.bring_up_to_date(&self.layout.reals, "Real", references, true)?;
         }
-        table.gather(values, references, out).map_err(|reference| no_such_variable("Real", reference))
+        let read = self.layout.reals.read(&self.now.values.reals, references, out);
+        read.map_err(|reference| no_such_variable("Real", reference))
     }
 
     /// `fmi2GetInteger`
     pub(super) fn get_integer(&mut self, references: &[ValueReference], out: &mut [i32]) -> CallResult {
-        self.bring_up_to_date(|layout| &layout.integers, "Integer", references, false)?;
+        if self.now.stale {
+            self.bring_up_to_date(&self.layout.integers, "Integer", references, false)?;
+        }
         for (&reference, out) in references.iter().zip(out) {
             *out = self.now.values.integers[slot(&self.layout.integers, "Integer", reference)?];
         }
@@ -90,7 +90,9 @@ impl<M: Model> Instance<M> {
 
     /// `fmi2GetBoolean`
     pub(super) fn get_boolean(&mut self, references: &[ValueReference], out: &mut [Boolean]) -> CallResult {
-        self.bring_up_to_date(|layout| &layout.booleans, "Boolean", references, false)?;
+        if self.now.stale {
+            self.bring_up_to_date(&self.layout.booleans, "Boolean", references, false)?;
+        }
         for (&reference, out) in references.iter().zip(out) {
             let value = self.now.values.booleans[slot(&self.layout.booleans, "Boolean", reference)?];
             *out = if value { TRUE } else { FALSE };
@@ -101,17 +103,14 @@ impl<M: Model> Instance<M> {
     /// Computes the variables behind `references` before they are read, if they are computed and something has changed.
     ///
     /// `fmi2Discard` exists for `fmi2GetReal` of Model Exchange alone (section 2.1.3).
+    #[inline(never)] // called when something has changed, which is seldom
     fn bring_up_to_date(
         &mut self,
-        table: impl Fn(&Layout) -> &Table,
+        table: &Table,
         type_name: &str,
         references: &[ValueReference],
         discard: bool,
     ) -> CallResult {
-        if !self.now.stale {
-            return Ok(());
-        }
-        let table = table(self.layout);
         let mut calculated = false;
         for &reference in references {
             calculated |= table.entries[slot(table, type_name, reference)?].calculated;
@@ -131,27 +130,34 @@ impl<M: Model> Instance<M> {
     /// last value, the others are set, and the host is warned.
     pub(super) fn set_real(&mut self, references: &[ValueReference], values: &[f64]) -> CallResult {
         let Self { layout, now, .. } = self;
-        let table = &layout.reals;
-        if let Some(slots) = table.run(references)
-            && table.admits(&slots, values, now.mode)
-        {
+        let nearby = references.first().and_then(|&first| layout.reals.gate(first));
+        let Some((span, _)) = nearby.filter(|(_, gate)| gate.admits(values, now.mode)) else {
+            return self.set_one_by_one(references, values);
+        };
+        if let Some(slots) = span.run(references) {
             now.values.reals[slots.clone()].copy_from_slice(values);
             now.values.missing[slots].fill(false);
-            now.stale = true;
-            return Ok(());
+        } else if span.contains(references) {
+            let (reals, missing) = (&mut now.values.reals[span.slots()], &mut now.values.missing[span.slots()]);
+            for (&reference, &value) in references.iter().zip(values) {
+                let place = span.place(reference);
+                (reals[place], missing[place]) = (value, false);
+            }
+        } else {
+            return self.set_one_by_one(references, values);
         }
-        self.set_one_by_one(references, values)
+        now.stale = true;
+        Ok(())
     }
 
-    /// As [`set_real`](Self::set_real), for what is no plain run of values: scattered variables, states, missing
+    /// As [`set_real`](Self::set_real), for what is not copied at once: variables with different limits, states, missing
     /// measurements, and values that are refused.
     #[inline(never)] // within `set_real` either would get too few registers
     fn set_one_by_one(&mut self, references: &[ValueReference], values: &[f64]) -> CallResult {
         let Self { layout, now, .. } = self;
         let table = &layout.reals;
         for (&reference, &value) in references.iter().zip(values) {
-            let slot = slot(table, "Real", reference)?;
-            if table.admits(&(slot..slot + 1), &[value], now.mode) {
+            if table.gate(reference).is_some_and(|(_, gate)| gate.admits(&[value], now.mode)) {
                 continue;
             }
             let entry = layout.settable(table, "Real", reference, now.mode)?;

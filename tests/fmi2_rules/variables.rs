@@ -145,18 +145,41 @@ fn a_refused_set_call_changes_nothing() {
 #[test]
 fn variables_read_together_are_those_read_one_by_one() {
     let host = Host::initialized(CoSimulation);
+    let check = |references: &[u32]| {
+        let alone: Vec<(Status, f64)> = references.iter().map(|&reference| host.get_real(reference)).collect();
+        let mut values = vec![0.0; references.len()];
+        let status = call!(fmi2GetReal(host.c, references.as_ptr(), references.len(), values.as_mut_ptr()));
+        let all_are_there = alone.iter().all(|(status, _)| *status == Status::Ok);
+        assert_eq!(status == Status::Ok, all_are_there, "{references:?}");
+        if all_are_there {
+            assert!(alone.iter().map(|(_, value)| value).eq(&values), "{references:?}");
+        }
+    };
     for first in 0..26 {
         for last in first..26 {
-            let references: Vec<u32> = (first..=last).collect();
-            let alone: Vec<(Status, f64)> = references.iter().map(|&reference| host.get_real(reference)).collect();
-            let mut values = vec![0.0; references.len()];
-            let status = call!(fmi2GetReal(host.c, references.as_ptr(), references.len(), values.as_mut_ptr()));
-            let all_are_there = alone.iter().all(|(status, _)| *status == Status::Ok);
-            assert_eq!(status == Status::Ok, all_are_there, "{first} to {last}");
-            if all_are_there {
-                assert!(alone.iter().map(|(_, value)| value).eq(&values), "{first} to {last}");
-            }
+            let mut references: Vec<u32> = (first..=last).collect();
+            check(&references);
+            references.reverse();
+            check(&references);
         }
+    }
+    // from end to end as if in order; the same twice; there and back
+    check(&[real::X, real::V, real::A, real::Y]);
+    check(&[real::X, real::X, real::V]);
+    check(&[real::C, real::Y, real::K, real::U, real::Y]);
+}
+
+#[test]
+fn variables_set_together_are_those_set_one_by_one() {
+    // in order, and in an order that begins and ends as if it were; the same twice, of which the last counts
+    for references in [[20, 21, 22], [22, 20, 21], [21, 21, 22], [20, 2, 22], [1, 2, 1]] {
+        let values = [1.5, 2.5, 3.5];
+        let (together, alone) = (in_initialization(CoSimulation), in_initialization(CoSimulation));
+        assert_eq!(call!(fmi2SetReal(together.c, references.as_ptr(), 3, values.as_ptr())), Status::Ok);
+        for (reference, value) in references.into_iter().zip(values) {
+            assert_eq!(alone.set_real(reference, value), Status::Ok);
+        }
+        assert_eq!(together.fingerprint(), alone.fingerprint(), "{references:?}");
     }
 }
 
