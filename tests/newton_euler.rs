@@ -4,8 +4,8 @@ use nalgebra::{Matrix3, Matrix6x3, Vector3, Vector6};
 use num_dual::{Dual2_64, Dual64};
 use proptest::prelude::*;
 use rps3::dynamics::{
-    Evaluation, Inputs, InverseDynamics, JointForces, MechanismParameters, PlantModel, PlantState, TrajectoryPoint,
-    derivative, evaluate, joint_forces, reactions,
+    DriveDemand, Evaluation, Inputs, InverseDynamics, JointForces, MechanismParameters, PlantModel, PlantState,
+    TrajectoryPoint, derivative, evaluate, joint_forces, reactions,
 };
 use rps3::mechanism::{Geometry, Limb, Pose, singular_heights};
 
@@ -213,6 +213,37 @@ proptest! {
         prop_assert!((found - s.jerk).amax() < 1e-7, "{found}");
         // least norm: no current within the null space of the map
         prop_assert!(demand.shortfall < 1e-9);
+    }
+
+    #[test]
+    fn demanded_voltages_change_the_currents_as_the_demand_does(
+        six in any::<bool>(), x in states(), u in loads(), jerk in prop::array::uniform3(-50.0..50.0_f64),
+        acceleration in prop::array::uniform3(-5.0..5.0_f64),
+    ) {
+        // with six motors also within the null space of the map, where currents of any rate make the same motion
+        prop_assume!(six || clearance(x.as_slice()) > 0.01);
+        let (p, m, inverse) = (parameters(six), model(six), InverseDynamics::new(&parameters(six)));
+        let (start, jerk) = (point_of(&x, Vector3::from(acceleration), Vector3::from(jerk)), Vector3::from(jerk));
+        let at = |t: f64| {
+            let acceleration = start.acceleration + jerk * t;
+            let velocity = start.velocity + (start.acceleration + jerk * (0.5 * t)) * t;
+            let position = start.position + (start.velocity + (start.acceleration / 2.0 + jerk * (t / 6.0)) * t) * t;
+            inverse.demand(&TrajectoryPoint { position, velocity, acceleration, jerk }, &u)
+        };
+        let step = 1e-4;
+        let (now, before, after) = (at(0.0), at(-step), at(step));
+        let motions = evaluate(&m, &x, &u).limb_motions;
+        for (demand, before, after, drive, rates) in [
+            (now.leg, before.leg, after.leg, m.motors.leg, motions.map(|r| r.length_rate)),
+            (now.revolute, before.revolute, after.revolute, m.motors.revolute, motions.map(|r| r.angle_rate)),
+        ] {
+            if demand == DriveDemand::default() {
+                continue;
+            }
+            let inductive = demand.voltage - demand.current * p.motor_ra - Vector3::from(rates) * drive.force_constant;
+            let (told, found) = (inductive / p.motor_la, (after.current - before.current) / (2.0 * step));
+            prop_assert!((told - found).amax() < 1e-4 * (1.0 + found.amax()), "{told} {found}");
+        }
     }
 
     #[test]

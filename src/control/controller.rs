@@ -363,3 +363,18 @@ impl Controller {
 
 /// No mechanism of sensible size is as high, in m, or tilts as far, in rad, as this times its base.
 const LARGEST_POSE: f64 = 1e3;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::SensorParameters;
+
+    #[test]
+    fn sensors_and_swarm_have_their_luck_from_different_streams() {
+        let sensors = SensorParameters { scale: 1.0, ..SensorParameters::default() };
+        let controller = Controller::new(ControllerParameters { sensors, ..ControllerParameters::default() }).unwrap();
+        let zero = Measurement::from_array(&[0.0; super::super::CHANNELS]);
+        let of_the_swarm_s_stream = Sensors::new(sensors, controller.memory.rng.clone()).read(&zero);
+        assert_ne!(controller.memory.sensors.clone().read(&zero), of_the_swarm_s_stream);
+    }
+}

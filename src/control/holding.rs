@@ -108,6 +108,7 @@ mod tests {
     use rand_xoshiro::Xoshiro256PlusPlus;
 
     use super::*;
+    use crate::control::{CHANNELS, Estimate, Gains, Measurement};
     use crate::dynamics::PlantParameters;
     use crate::study::Crossing;
 
@@ -135,5 +136,42 @@ mod tests {
         }
         println!("largest relative error of the quotients: {largest:.1e}, over {poses} poses");
         assert!(poses > 4000 && largest < 1e-4, "{largest:e} {poses}");
+    }
+    /// On the way to the singular surface, from where the voltage to hold is 96.5 % of the limit to where it is 98.5 %.
+    #[test]
+    fn what_holding_takes_beyond_the_usable_voltage_counts_squared() {
+        let experiment = Crossing::default().experiment(false);
+        let model = PlantModel::<f64>::without_stops(&experiment.plant.mechanism);
+        let [start, via, _] = experiment.controller.waypoints.map(Vector3::from);
+        let v_max = model.motors.v_max;
+        let way = |wanted: f64| {
+            let (mut held, mut lost) = (0.0, 1.0);
+            for _ in 0..60 {
+                let middle = 0.5 * (held + lost);
+                let held_there = voltages(&model, &start.lerp(&via, middle)).is_some_and(|v| v.amax() < wanted * v_max);
+                if held_there { held = middle } else { lost = middle }
+            }
+            held
+        };
+        let (target, beyond) = (start.lerp(&via, way(0.965)), start.lerp(&via, way(0.985)));
+        let (step, horizon, term) = (beyond - target, 0.01, HoldingTerm::default());
+
+        let reference = |position| ReferencePoint { position, ..ReferencePoint::default() };
+        let estimate = Estimate { s: target, s_dot: step * (0.5 / horizon) };
+        let measured = Measurement::from_array(&[0.0; CHANNELS]);
+        let situation = Situation::new(&model, &estimate, &reference(target), &measured, &Gains::default());
+        let holding = |ahead| Holding::new(&model, &situation, &reference(ahead), horizon, &term);
+        // velocity leads half the step, the accelerations as far on or back
+        for (share, counts) in [(1.0, true), (0.0, true), (-1.0, false)] {
+            let acceleration = step * (share / (horizon * horizon));
+            let held = voltages(&model, &(target + step * (0.5 * (1.0 + share)))).unwrap();
+            let excess = held.map(|v| (v.abs() - term.usable * v_max).max(0.0));
+            let (expected, found) =
+                (term.weight * excess.norm_squared(), holding(target).unwrap().weigh(&acceleration));
+            // linear in the pose, which 1 / sigma_min is not: a hundredth of the voltage's change
+            assert!((found - expected).abs() <= 0.1 * expected, "{found:e} {expected:e}");
+            assert_eq!(expected > 0.0, counts);
+        }
+        assert!(holding(beyond).is_none(), "what cannot be held anyway does not count");
     }
 }

@@ -88,3 +88,21 @@ fn length<T: Scalar>(v: &Vector3<T>) -> T {
     let square = v.norm_squared();
     if square > T::zero() { square.sqrt() } else { T::zero() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::PlantParameters;
+
+    #[test]
+    fn pose_errors_are_a_distance_and_an_angle() {
+        let model = PlantModel::<f64>::new(&PlantParameters::default());
+        // without torsion, tilts about one axis differ by a rotation about it
+        let (reference, s) = (Vector3::new(0.05, 0.03, 0.04), Vector3::new(0.05, 0.06, 0.08));
+        let (_, angle) = pose_errors(&model, &s, &reference);
+        assert!((angle - 0.05).abs() < 1e-14, "{angle}");
+        let (distance, angle) = pose_errors(&model, &Vector3::new(0.07, 0.03, 0.04), &reference);
+        assert!((distance - 0.02).abs() < 1e-15 && angle < 1e-15, "{distance} {angle}");
+        assert_eq!(pose_errors(&model, &s, &s), (0.0, 0.0));
+    }
+}

@@ -184,6 +184,23 @@ mod tests {
     }
 
     #[test]
+    fn a_reference_from_outside_goes_on_with_constant_acceleration() {
+        let vector = |x: f64, y: f64, z: f64| Vector3::new(x, y, z).map(Dual64::from);
+        let given = ReferencePoint {
+            position: vector(0.07, 0.1, 0.02),
+            rate: vector(0.3, -0.2, 0.5),
+            acceleration: vector(-4.0, 3.0, 2.0),
+        };
+        assert_eq!(ExternalReference(given).ahead(Dual64::from(0.0)), given);
+        for t in [0.0, 1e-3, 0.02] {
+            let point = ExternalReference(given).ahead(Dual64::new(t, 1.0));
+            assert!((point.position.map(|x| x.eps) - point.rate.map(|x| x.re)).amax() < 1e-15);
+            assert_eq!(point.rate.map(|x| x.eps), given.acceleration.map(|x| x.re));
+            assert_eq!(point.acceleration, given.acceleration);
+        }
+    }
+
+    #[test]
     fn path_runs_through_all_waypoints_from_rest_to_rest() {
         for profile in [Profile::Quintic, Profile::ConstantSpeed] {
             let r = reference::<f64>(profile);

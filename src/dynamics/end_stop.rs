@@ -103,3 +103,49 @@ impl<T: Scalar> EndStops<T> {
         self.angle.force(limb.angle(), rate)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use num_dual::Dual64;
+
+    use super::*;
+
+    const WIDE: f64 = 2e-3;
+
+    fn stop<T: Scalar>() -> EndStop<T> {
+        let [min, max, stiffness, damping, width] = [-0.5, 0.5, 1e5, 300.0, WIDE].map(constant);
+        EndStop { min, max, stiffness, damping, width }
+    }
+
+    #[test]
+    fn force_at_rest_is_the_loss_of_elastic_energy() {
+        for k in -60..=60 {
+            let penetration = f64::from(k) * WIDE / 20.0;
+            for position in [0.5 + penetration, -0.5 - penetration] {
+                let energy = stop().energy(Dual64::new(position, 1.0));
+                assert!((energy.re - stop::<f64>().energy(position)).abs() < 1e-12);
+                let force = stop().force(position, 0.0);
+                assert!((force + energy.eps).abs() < 1e-9, "{position}: {force} {}", energy.eps);
+            }
+        }
+    }
+
+    #[test]
+    fn stiffness_grows_over_the_width_and_is_the_parameter_s_beyond() {
+        let push = |penetration: f64| stop().force(-0.5 - penetration, 0.0);
+        assert_eq!(push(0.0), 0.0);
+        assert!((push(0.5 * WIDE) - 1e5 * WIDE / 8.0).abs() < 1e-9);
+        assert!((push(WIDE) - 1e5 * WIDE / 2.0).abs() < 1e-9);
+        assert!((push(3.0 * WIDE) - push(2.0 * WIDE) - 1e5 * WIDE).abs() < 1e-9);
+    }
+
+    #[test]
+    fn damping_opposes_the_motion_and_a_stop_never_pulls() {
+        for side in [1.0, -1.0] {
+            let force = |rate: f64| side * stop().force(side * (0.5 + 2.0 * WIDE), side * rate);
+            assert!((force(0.1) - force(0.0) + 30.0).abs() < 1e-9, "approaching: pushed back harder");
+            assert!((force(-0.1) - force(0.0) - 30.0).abs() < 1e-9, "leaving: less hard");
+            assert_eq!(force(-10.0), 0.0, "too fast for the spring to follow");
+        }
+    }
+}

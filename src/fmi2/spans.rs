@@ -74,11 +74,20 @@ impl Span {
     /// Copies from the span's `values` those behind the first of `references`, as long as these are within it; how many.
     #[inline]
     pub fn gather(&self, values: &[f64], references: &[u32], out: &mut [f64]) -> usize {
-        for (done, (&reference, out)) in references.iter().zip(out).enumerate() {
-            let Some(&value) = values.get(self.place(reference)) else { return done };
-            *out = value;
+        let value = |reference: u32| values.get(self.place(reference));
+        let mut done = 0;
+        // four at a time, for a loop costs as much as what is in it
+        for (references, out) in references.as_chunks().0.iter().zip(out.as_chunks_mut().0) {
+            let [Some(a), Some(b), Some(c), Some(d)] = references.map(value) else { break };
+            *out = [*a, *b, *c, *d];
+            done += out.len();
         }
-        references.len()
+        for (&reference, out) in references[done..].iter().zip(&mut out[done..]) {
+            let Some(&value) = value(reference) else { break };
+            *out = value;
+            done += 1;
+        }
+        done
     }
 
     /// Whether all `references` are within the span.
