@@ -131,6 +131,16 @@ mod tests {
     }
 
     #[test]
+    fn elastic_energy_goes_on_where_the_width_ends() {
+        let energy = |penetration: f64| stop().energy(0.5 + penetration);
+        // k w^2 / 6, and from there on at k (p - w/2)
+        let (at_width, gain) = (1e5 * WIDE * WIDE / 6.0, 1e5 * WIDE * WIDE);
+        assert!((energy(WIDE * (1.0 - 1e-12)) - at_width).abs() < 1e-9);
+        assert!((energy(WIDE * (1.0 + 1e-12)) - at_width).abs() < 1e-9);
+        assert!((energy(2.0 * WIDE) - at_width - gain).abs() < 1e-9);
+    }
+
+    #[test]
     fn stiffness_grows_over_the_width_and_is_the_parameter_s_beyond() {
         let push = |penetration: f64| stop().force(-0.5 - penetration, 0.0);
         assert_eq!(push(0.0), 0.0);
