@@ -3,9 +3,10 @@
 mod common;
 
 use common::{COUPLED_STEP, Message, Slave};
+use nalgebra::{Vector3, Vector6};
 use rps3::control::{Controller, ControllerParameters, Measurement, ReferencePoint};
-use rps3::coupling::Experiment;
-use rps3::dynamics::PlantParameters;
+use rps3::coupling::{Experiment, measure};
+use rps3::dynamics::{Inputs, PlantModel, PlantParameters, PlantState};
 use rps3::fmi2::types::Status;
 use rps3::models;
 
@@ -57,6 +58,18 @@ fn elsewhere_nan_is_an_error_and_nothing_of_the_call_is_done() {
     assert!(!slave.boolean("sensor_fault"));
     advance(&slave, 5, 6);
     assert!(!slave.boolean("sensor_fault"), "the refused call has set nothing missing");
+}
+
+#[test]
+fn voltages_that_are_cut_off_are_at_no_limit() {
+    let slave = running();
+    slave.set_real("i_leg1", 50.0);
+    slave.set_real("theta2", f64::NAN);
+    advance(&slave, 5, 24);
+    assert!(slave.boolean("saturated"));
+    advance(&slave, 24, 25);
+    assert_eq!(VOLTAGES.map(|name| slave.real(name)), [0.0; 6]);
+    assert!(!slave.boolean("saturated"));
 }
 
 #[test]
@@ -143,7 +156,7 @@ fn coupled(experiment: &Experiment, spoil: impl Fn(f64, &mut Measurement<f64>)) 
         let mut measured = *measured;
         spoil(t, &mut measured);
         if last.is_none() {
-            controller.assume(&nalgebra::Vector6::zeros(), &measured);
+            controller.assume(&Vector6::zeros(), &measured);
         }
         last = Some(t);
         let diagnostics = controller.watched_tick(t, &measured, true, &external, &experiment.tuning)?;
@@ -155,6 +168,37 @@ fn coupled(experiment: &Experiment, spoil: impl Fn(f64, &mut Measurement<f64>)) 
     let joint_radius = PlantParameters::default().mechanism.joint_spacing / 3.0_f64.sqrt();
     experiment.run_with(tick, |record| error = error.max(record.pose_error(joint_radius))).unwrap();
     (error, fault, cut_off)
+}
+
+#[test]
+fn after_a_cut_off_the_prediction_knows_that_there_was_no_voltage() {
+    let experiment = Experiment::default();
+    let parameters = ControllerParameters { computation_delay: true, ..experiment.controller };
+    let model = PlantModel::<f64>::without_stops(&parameters.mechanism);
+    let mut state = PlantState::zeros();
+    state.fixed_rows_mut::<3>(0).copy_from(&Vector3::from(experiment.plant.start));
+    let measured = measure(&model, &state, &Inputs::zero());
+    let missing = Measurement { lengths: measured.lengths * f64::NAN, ..measured };
+    let tick = |controller: &mut Controller, k: u32, measured: &Measurement<f64>| {
+        let external = ReferencePoint::default();
+        controller.watched_tick(f64::from(k) * 1e-3, measured, true, &external, &experiment.tuning).unwrap().voltages
+    };
+    let mut controller = Controller::new(parameters).unwrap();
+    controller.assume(&Vector6::zeros(), &measured);
+    let held = (0..5).map(|k| tick(&mut controller, k, &measured)).last().unwrap();
+    for k in 5..30 {
+        tick(&mut controller, k, &missing);
+    }
+    assert!(controller.sensor_faults().cut_off);
+    let next = |voltages: Option<Vector6<f64>>| {
+        let mut controller = controller.clone();
+        if let Some(voltages) = voltages {
+            controller.assume(&voltages, &measured);
+        }
+        tick(&mut controller, 30, &measured)
+    };
+    assert_eq!(next(None), next(Some(Vector6::zeros())));
+    assert_ne!(next(None), next(Some(held)));
 }
 
 #[test]

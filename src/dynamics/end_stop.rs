@@ -106,6 +106,7 @@ impl<T: Scalar> EndStops<T> {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Vector3;
     use num_dual::Dual64;
 
     use super::*;
@@ -156,6 +157,46 @@ mod tests {
             assert!((force(0.1) - force(0.0) + 30.0).abs() < 1e-9, "approaching: pushed back harder");
             assert!((force(-0.1) - force(0.0) - 30.0).abs() < 1e-9, "leaving: less hard");
             assert_eq!(force(-10.0), 0.0, "too fast for the spring to follow");
+        }
+    }
+    #[test]
+    fn a_limb_s_stop_is_one_of_lengths_at_the_joint_radius() {
+        let parameters = PlantParameters::<f64>::default();
+        let EndStops { length, angle, .. } = EndStops::new(&parameters);
+        let lever = Geometry::new(parameters.mechanism.base_radius, parameters.mechanism.joint_spacing).joint_radius;
+        for penetration in [0.0, 1e-4, 5e-4, 2e-3, 1e-2] {
+            for rate in [-0.1, 0.0, 0.1] {
+                let force = length.force(parameters.d_max + penetration, rate);
+                let torque = angle.force(parameters.theta_max + penetration / lever, rate / lever);
+                assert!((torque - force * lever).abs() < 1e-9 * (1.0 + force.abs()), "{penetration} {rate}: {torque}");
+            }
+        }
+    }
+
+    #[test]
+    fn stops_of_limbs_are_felt_at_every_angle_beyond_the_limits_and_at_no_other() {
+        for (theta_min, theta_max) in [(0.1, 1.2), (-0.3, 0.4), (0.1, 2.0)] {
+            let stops = EndStops::new(&PlantParameters { theta_min, theta_max, ..PlantParameters::default() });
+            for k in -314..314 {
+                let angle = 0.01 * f64::from(k) + 0.005;
+                let (sin, cos) = angle.sin_cos();
+                let nowhere = Vector3::zeros();
+                let limb = Limb {
+                    sin,
+                    cos,
+                    length: 0.3,
+                    arm: nowhere,
+                    axial: nowhere,
+                    normal: nowhere,
+                    lateral: nowhere,
+                    length_gradient: nowhere,
+                    angle_gradient: nowhere,
+                };
+                let torque = stops.torque(&limb, 0.0);
+                assert_eq!(torque > 0.0, angle < theta_min, "{angle}");
+                assert_eq!(torque < 0.0, angle > theta_max, "{angle}");
+                assert!((torque - stops.angle.force(angle, 0.0)).abs() <= 1e-9 * torque.abs(), "{angle}");
+            }
         }
     }
 }
