@@ -172,6 +172,42 @@ fn steps_without_a_tick_change_nothing_but_the_time() {
 }
 
 #[test]
+fn a_tick_at_the_end_of_a_step_belongs_to_the_next_even_if_the_master_s_clock_has_drifted() {
+    let (exact, drifting) = (Slave::<Controller>::new(), Slave::<Controller>::new());
+    let (mut time, mut ahead) = (0.0, 0);
+    for slave in [&exact, &drifting] {
+        slave.set_integer("control_mode", 2);
+        slave.initialize();
+    }
+    let start = exact.real("d1");
+    for k in 0..200_u32 {
+        let point = f64::from(k) * 1e-3;
+        for (slave, point) in [(&exact, point), (&drifting, time)] {
+            assert_eq!(slave.set_real("d1", start + 1e-6 * f64::from(k % 7)), Status::Ok);
+            assert_eq!(slave.step(point, 1e-3), Status::Ok);
+        }
+        time += 1e-3;
+        ahead += u32::from(time > f64::from(k + 1) * 1e-3);
+        assert_eq!(exact.outputs(), drifting.outputs(), "step {k}");
+    }
+    assert!(ahead > 20, "the sum of the steps is ahead of the ticks at {ahead} of 200 times");
+}
+
+#[test]
+fn readings_held_over_many_ticks_of_one_step_are_not_frozen() {
+    let controller = Slave::<Controller>::new();
+    controller.set_integer("control_mode", 2);
+    controller.initialize();
+    let start = controller.real("d1");
+    for k in 0..5 {
+        let t = 0.05 * f64::from(k);
+        assert_eq!(controller.set_reals(&[("d1", start + 0.01 * t), ("d1_dot", 0.01)]), Status::Ok);
+        assert_eq!(controller.step(t, 0.05), Status::Ok);
+        assert!(!controller.boolean("sensor_fault"), "{:?}", controller.take_messages());
+    }
+}
+
+#[test]
 fn work_for_one_call_ends_with_a_discard_and_not_with_a_hang() {
     let plant = Slave::<Plant>::new();
     assert_eq!(plant.set_real("max_step", 1e-6), Status::Ok);

@@ -44,7 +44,10 @@ def test_euler_converges_to_the_built_in_solver_with_order_one(plant: Fmu) -> No
 
 
 @pytest.mark.master("FMPy", "ME, time events")
-def test_controller_has_equal_outputs_at_its_time_events_and_its_co_simulation_ticks(controller: Fmu) -> None:
+@pytest.mark.parametrize("early", [0.0, 1e-10])  # a host's clock may have added up its steps
+def test_controller_has_equal_outputs_at_its_time_events_and_its_co_simulation_ticks(
+    controller: Fmu, early: float
+) -> None:
     outputs, ticks = controller.names("output"), 50
     with Instance(controller) as cs, ModelInstance(controller) as me:
         cs.initialize({"control_mode": 2})
@@ -56,7 +59,7 @@ def test_controller_has_equal_outputs_at_its_time_events_and_its_co_simulation_t
             *_, defined, event_time = info
             assert defined and event_time == pytest.approx((k + 1) * 1e-3, abs=1e-15)
             me.slave.enterContinuousTimeMode()
-            me.slave.setTime(event_time)
+            me.slave.setTime(event_time - early)
             me.slave.enterEventMode()
             info = update(me)
 
