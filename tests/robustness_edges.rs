@@ -268,4 +268,9 @@ fn the_earliest_and_the_latest_start_time_are_served() {
         runs_from::<Plant>(start);
         runs_from::<Controller>(start);
     }
+    let late = Slave::<Plant>::new();
+    assert_eq!(late.setup(1e9 - 1.0, None), Status::Ok);
+    late.pass_initialization();
+    assert_eq!(late.step(1e9 - 1.0, 2.0), Status::Error, "no step leads beyond");
+    assert_eq!(late.step(1e9 - 1.0, 1.0), Status::Ok);
 }
