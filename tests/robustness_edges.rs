@@ -201,7 +201,7 @@ fn readings_held_over_many_ticks_of_one_step_are_not_frozen() {
     let start = controller.real("d1");
     for k in 0..5 {
         let t = 0.05 * f64::from(k);
-        assert_eq!(controller.set_reals(&[("d1", start + 0.01 * t), ("d1_dot", 0.01)]), Status::Ok);
+        assert_eq!(controller.set_reals(&[("d1", start + 0.05 * t), ("d1_dot", 0.05)]), Status::Ok);
         assert_eq!(controller.step(t, 0.05), Status::Ok);
         assert!(!controller.boolean("sensor_fault"), "{:?}", controller.take_messages());
     }

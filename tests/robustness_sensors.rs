@@ -61,6 +61,22 @@ fn elsewhere_nan_is_an_error_and_nothing_of_the_call_is_done() {
 }
 
 #[test]
+fn a_measurement_is_back_in_whatever_company_it_is_set() {
+    let slave = running();
+    let valid = ["d2", "theta1", "theta2", "i_leg1"].map(|name| (name, slave.real(name)));
+    let [d2, theta1, theta2, i_leg1] = valid;
+    for company in
+        [vec![theta2], vec![theta1, theta2], vec![theta2, d2], vec![i_leg1, theta2, d2], vec![theta2, ("k_p", 100.0)]]
+    {
+        assert_eq!(slave.set_real("theta2", f64::NAN), Status::Warning);
+        assert_eq!(slave.set_reals(&company), Status::Ok);
+        let state = slave.serialize(slave.state());
+        assert_eq!(slave.set_real("theta2", theta2.1), Status::Ok);
+        assert!(state == slave.serialize(slave.state()), "{company:?}");
+    }
+}
+
+#[test]
 fn voltages_that_are_cut_off_are_at_no_limit() {
     let slave = running();
     slave.set_real("i_leg1", 50.0);
