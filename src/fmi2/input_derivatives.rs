@@ -158,6 +158,18 @@ mod tests {
     }
 
     #[test]
+    fn new_derivatives_leave_nothing_of_the_last_step_s() {
+        let mut derivatives = InputDerivatives::new(2);
+        derivatives.set(0, 1, 2.0);
+        derivatives.set(1, 2, 3.0);
+        derivatives.begin_step(0.0);
+        derivatives.step_done();
+        derivatives.set(1, 1, 5.0);
+        derivatives.begin_step(1.0);
+        assert_eq!((derivatives.deviation(0, 3.0), derivatives.deviation(1, 3.0)), (0.0, 10.0));
+    }
+
+    #[test]
     fn derivatives_hold_for_one_step() {
         let mut derivatives = InputDerivatives::new(1);
         derivatives.set(0, 1, 2.0);

@@ -239,3 +239,41 @@ impl<M: Model> Snapshot<M> {
             && self.input_derivatives.is_finite()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::description::VariableType;
+    use crate::models::Controller;
+
+    #[test]
+    fn a_snapshot_fits_only_if_it_could_have_been_saved() {
+        type Spoil = fn(&mut Snapshot<Controller>);
+        let layout = Layout::new(Controller::definition());
+        let (time, slot) =
+            (layout.time.unwrap(), |name| Values::slot(layout.definition, VariableType::Real, name).unwrap());
+        assert_eq!((time, slot("d1"), slot("ref_heave")), (0, 1, 22), "what the closures below spoil");
+        let spoiled = |spoil: Spoil| {
+            let mut snapshot = Snapshot::<Controller>::new(Interface::CoSimulation, &layout);
+            spoil(&mut snapshot);
+            snapshot.fits(Interface::CoSimulation, &layout)
+        };
+        assert!(spoiled(|_| {}));
+        assert!(spoiled(|snapshot| snapshot.values.missing[1] = true), "a measurement may be missing");
+        let spoils: [Spoil; 10] = [
+            |snapshot| snapshot.interface = Interface::ModelExchange,
+            |snapshot| snapshot.mode = Mode::Fatal,
+            |snapshot| snapshot.time = f64::NAN,
+            |snapshot| snapshot.values.reals.push(0.0),
+            |snapshot| snapshot.values.integers.clear(),
+            |snapshot| snapshot.values.booleans.clear(),
+            |snapshot| snapshot.values.reals[1] = f64::INFINITY,
+            |snapshot| snapshot.values.missing[22] = true,
+            |snapshot| snapshot.input_derivatives.set(0, 1, f64::NAN),
+            |snapshot| snapshot.input_derivatives = InputDerivatives::new(1),
+        ];
+        for (k, spoil) in spoils.into_iter().enumerate() {
+            assert!(!spoiled(spoil), "{k}");
+        }
+    }
+}

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from fmpy import simulate_fmu
+from fmpy.fmi1 import FMICallException
 from rps3_study.fmu import Fmu, Instance, ModelInstance
 
 STARTS = {"v_leg1": 3.0, "v_leg2": -2.0, "v_rev1": 4.0, "f_ext_z": -5.0}
@@ -62,6 +63,31 @@ def test_controller_has_equal_outputs_at_its_time_events_and_its_co_simulation_t
             me.slave.setTime(event_time - early)
             me.slave.enterEventMode()
             info = update(me)
+
+
+def test_time_of_a_discrete_time_model_goes_on_in_event_mode_once_the_event_is_over(controller: Fmu) -> None:
+    # footnote 8 of section 3.2.3
+    with ModelInstance(controller) as me:
+        me.initialize({"control_mode": 2})
+
+        def stands_still(time: float) -> None:
+            with pytest.raises(FMICallException):
+                me.slave.setTime(time)
+
+        stands_still(1e-3)
+        update(me)
+        over = me.slave.getFMUState()
+        me.slave.setTime(1e-3)
+        stands_still(2e-3)
+        me.slave.setFMUState(over)
+        me.slave.setTime(1e-3)
+        update(me)
+        me.slave.enterContinuousTimeMode()
+        me.slave.enterEventMode()
+        stands_still(2e-3)
+        update(me)
+        me.slave.setTime(2e-3)
+        me.slave.freeFMUState(over)
 
 
 def update(instance: ModelInstance) -> tuple:
