@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use rps3::control::{Deviations, Estimator, Measurement, SensorParameters, Sensors};
+use rps3::control::{ControllerParameters, Deviations, Estimator, Measurement, SensorParameters, Sensors};
 use rps3::coupling::measure;
 use rps3::defaults as d;
 use rps3::dynamics::{Inputs, PlantModel, PlantParameters, PlantState};
@@ -39,6 +39,38 @@ proptest! {
         let estimate = estimator.update(&model.geometry, &exact(&model, s, rates));
         prop_assert!((estimate.s - Vector3::from(s)).amax() < 1e-13);
         prop_assert!((estimate.s_dot - Vector3::from(rates)).amax() < 1e-12);
+    }
+}
+
+#[test]
+fn an_estimate_far_from_its_first_guess_is_no_false_minimum() {
+    // where a search from the default start pose ends elsewhere
+    for s in [[0.0623, 0.3853, -0.2165], [0.0773, -0.0257, 0.526], [-0.0313, -0.0502, 0.4055]] {
+        let model = model();
+        let mut estimator = Estimator::of(&ControllerParameters::default());
+        let measured = exact(&model, s, [0.0; 3]);
+        let plane = model.geometry.pose_of_joints(measured.lengths.into(), measured.angles.into());
+        assert!((plane - Vector3::from(s)).amax() < 1e-12, "{plane}");
+        let estimate = estimator.update(&model.geometry, &measured);
+        assert!((estimate.s - Vector3::from(s)).amax() < 1e-12, "{}", estimate.s);
+        assert_eq!(estimator.contradiction(), None);
+    }
+}
+
+#[test]
+fn readings_that_fit_no_pose_contradict_each_other() {
+    let model = model();
+    let measured = exact(&model, VIA, [0.0; 3]);
+    let contradiction = |measured: Measurement<f64>| {
+        let mut estimator = Estimator::of(&ControllerParameters::default());
+        estimator.update(&model.geometry, &measured);
+        estimator.contradiction()
+    };
+    assert_eq!(contradiction(measured), None);
+    let degrees = Measurement { angles: measured.angles * 180.0 / std::f64::consts::PI, ..measured };
+    let swapped = Measurement { lengths: measured.angles, angles: measured.lengths, ..measured };
+    for (what, measured) in [("degrees", degrees), ("swapped", swapped)] {
+        assert!(contradiction(measured).is_some_and(|error| error > 0.02), "{what}");
     }
 }
 

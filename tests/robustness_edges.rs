@@ -208,6 +208,58 @@ fn readings_held_over_many_ticks_of_one_step_are_not_frozen() {
 }
 
 #[test]
+fn a_tick_sees_the_inputs_set_at_its_time_however_late_the_start() {
+    for (start, sample_time) in [(0.0, 1e-3), (5e7, 1e-3), (9e8, 1e-3), (2e6, 1e-4)] {
+        let controller = Slave::<Controller>::new();
+        controller.set_integer("control_mode", 2);
+        controller.set_integer("reference_mode", 2);
+        assert_eq!(controller.set_real("sample_time", sample_time), Status::Ok);
+        assert_eq!(controller.setup(start, None), Status::Ok);
+        controller.pass_initialization();
+        for k in 0..300 {
+            let reference = 0.05 + 1e-5 * f64::from(k);
+            assert_eq!(controller.set_real("ref_heave", reference), Status::Ok);
+            assert_eq!(controller.step(start + f64::from(k) * sample_time, sample_time), Status::Ok);
+            assert_eq!(controller.real("heave_ref"), reference, "tick {k} from {start} s on");
+        }
+    }
+}
+
+#[test]
+fn a_tolerance_beyond_all_measure_is_cut() {
+    let heave = |tolerance: f64| {
+        let plant = Slave::<Plant>::new();
+        assert_eq!(plant.setup_tolerance(tolerance), Status::Ok);
+        plant.pass_initialization();
+        assert_eq!(plant.set_real("v_leg1", 20.0), Status::Ok);
+        for k in 0..20 {
+            assert_eq!(plant.step(0.01 * f64::from(k), 0.01), Status::Ok);
+        }
+        plant.real("heave")
+    };
+    assert_eq!(heave(1e3), heave(0.1));
+    assert_ne!(heave(0.1), heave(1e-6));
+}
+
+#[test]
+fn inputs_with_derivatives_end_where_these_lead() {
+    fn check<M: common::Fmu>(input: &str) {
+        let slave = Slave::<M>::new();
+        slave.initialize();
+        let start = slave.real(input);
+        for k in 0..3 {
+            slave.set_input_derivative(input, 0.5);
+            // half the sample time of the controller, whose first step is an idle one
+            assert_eq!(slave.step(5e-4 * f64::from(k), 5e-4), Status::Ok);
+            let expected = start + 0.5 * 5e-4 * f64::from(k + 1);
+            assert!((slave.real(input) - expected).abs() < 1e-12, "{input}: {} {expected}", slave.real(input));
+        }
+    }
+    check::<Plant>("v_leg1");
+    check::<Controller>("ref_heave");
+}
+
+#[test]
 fn work_for_one_call_ends_with_a_discard_and_not_with_a_hang() {
     let plant = Slave::<Plant>::new();
     assert_eq!(plant.set_real("max_step", 1e-6), Status::Ok);

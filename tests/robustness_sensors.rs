@@ -77,6 +77,27 @@ fn a_measurement_is_back_in_whatever_company_it_is_set() {
 }
 
 #[test]
+fn a_measurement_that_is_not_used_may_be_missing_for_ever() {
+    for (k_a, cut_off) in [(0.0, false), (0.1, true)] {
+        let slave = running();
+        slave.set_reals(&[("k_a", k_a), ("a_x", f64::NAN)]);
+        advance(&slave, 5, 100);
+        assert!(slave.boolean("sensor_fault"));
+        assert_eq!(VOLTAGES.map(|name| slave.real(name)) == [0.0; 6], cut_off, "k_a = {k_a}");
+    }
+}
+
+#[test]
+fn measurements_that_contradict_each_other_are_a_warning() {
+    let slave = running();
+    slave.set_reals(&[("theta1", 45.0), ("theta2", 46.0), ("theta3", 47.0)]);
+    advance(&slave, 5, 8);
+    let messages = slave.take_messages();
+    let [warning] = warnings(&messages)[..] else { panic!("{messages:?}") };
+    assert!(warning.contains("contradict each other"), "{warning}");
+}
+
+#[test]
 fn voltages_that_are_cut_off_are_at_no_limit() {
     let slave = running();
     slave.set_real("i_leg1", 50.0);

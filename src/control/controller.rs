@@ -10,6 +10,7 @@ use super::mpso::Progress;
 use super::parameters::Tuning;
 use super::preview::{pose_errors, stacked_currents};
 use super::search::{Elite, Search};
+use super::sensor_watch::Used;
 use super::{
     ControlError, ControllerParameters, Damping, Estimate, Estimator, ExternalReference, Fitness, ForceDistribution,
     Measurement, Reference, ReferencePoint, SensorFaults, SensorWatch, Sensors, SingularBasis, Situation,
@@ -166,7 +167,7 @@ impl Controller {
         }
         let estimator = &self.memory.estimator;
         let waypoint = Vector3::from(self.parameters.waypoints[0]);
-        let near = estimator.fit(&self.model.geometry, &reading, &waypoint, false).estimate;
+        let near = estimator.find(&self.model.geometry, &reading, &waypoint).estimate;
         (read, estimator.fit(geometry, &read, &near.s.map(T::from), true).estimate)
     }
 
@@ -193,6 +194,12 @@ impl Controller {
         self.memory.watch.faults()
     }
 
+    /// By how much the readings of the last tick contradict each other, see [`Estimator::contradiction`]; `None` also where
+    /// a known fault of a sensor explains it.
+    pub fn contradiction(&self) -> Option<f64> {
+        if self.sensor_faults().any() { None } else { self.memory.estimator.contradiction() }
+    }
+
     /// One [`tick`](Self::tick) under the watch of [`SensorWatch`]: measurements that are not finite
     /// are missing, `fresh` ones may be frozen, and what lasts too long ends in zero voltages.
     ///
@@ -206,8 +213,12 @@ impl Controller {
         external: &ReferencePoint<f64>,
         tuning: &Tuning,
     ) -> Result<Diagnostics, ControlError> {
-        let used = self.memory.watch.check(measured, fresh);
-        let mut diagnostics = self.tick(t, &used, external, tuning, true)?;
+        let used = Used {
+            revolute_currents: self.parameters.mechanism.revolute_motors,
+            acceleration: tuning.gains.acceleration != 0.0,
+        };
+        let valid = self.memory.watch.check(measured, fresh, used);
+        let mut diagnostics = self.tick(t, &valid, external, tuning, true)?;
         if self.memory.watch.faults().cut_off {
             diagnostics.voltages = Vector6::zeros();
             diagnostics.saturated = false;
@@ -261,8 +272,12 @@ impl Controller {
         let measured = self.memory.sensors.read(measured);
         let estimate = self.memory.estimator.update(&self.model.geometry, &measured);
         if !(estimate.s.amax() < LARGEST_POSE && estimate.s_dot.amax().is_finite()) {
-            let (lengths, angles) = (measured.lengths.into(), measured.angles.into());
-            return Err(ControlError::NoPose { lengths, angles });
+            return Err(ControlError::NoPose {
+                lengths: measured.lengths.into(),
+                angles: measured.angles.into(),
+                length_rates: measured.length_rates.into(),
+                angle_rates: measured.angle_rates.into(),
+            });
         }
         let currents = stacked_currents(&measured);
         let (ahead, acting, currents) = if self.parameters.computation_delay && delayed {
@@ -325,6 +340,10 @@ impl Controller {
         x.fixed_rows_mut::<3>(0).copy_from(&estimate.s);
         x.fixed_rows_mut::<3>(3).copy_from(&estimate.s_dot);
         x.fixed_rows_mut::<6>(6).copy_from(currents);
+        if !self.parameters.mechanism.revolute_motors {
+            // their circuits are open, whatever the sensors say
+            x.fixed_rows_mut::<3>(9).fill(0.0);
+        }
         let v = self.memory.voltages;
         let inputs =
             Inputs { v_leg: Vector3::new(v[0], v[1], v[2]), v_rev: Vector3::new(v[3], v[4], v[5]), ..Inputs::zero() };
@@ -337,7 +356,7 @@ impl Controller {
                 self.parameters.sample_time,
                 &PREDICTION,
             )
-            .map_err(|_| ControlError::NotFinite)?;
+            .map_err(ControlError::Prediction)?;
         self.memory.work = self.memory.work.saturating_add(WORK_OF_A_DERIVATIVE * solver.evaluations);
         let predicted = Estimate { s: x.fixed_rows::<3>(0).into(), s_dot: x.fixed_rows::<3>(3).into() };
         Ok((predicted, x.fixed_rows::<6>(6).into()))

@@ -56,6 +56,8 @@ pub struct Estimator {
     pose_information: [[f64; 3]; 3],
     shared_information: [[f64; 3]; 3],
     bias_information: [[f64; 3]; 3],
+    /// Of the last fit, see [`Fit`].
+    misfit: f64,
 }
 
 /// A least-squares fit and the information that it rests on.
@@ -67,7 +69,14 @@ pub struct Fit<T> {
     pose_information: Matrix3<T>,
     shared_information: Matrix3<T>,
     bias_information: Matrix3<f64>,
+    /// Sum of the squared errors of the six readings, each by its standard deviation.
+    misfit: T,
 }
+
+/// A fit that leaves more than this [`Fit::misfit`] is no matter of noise.
+const SUSPICIOUS: f64 = 1e3;
+/// Length, m, by which readings that contradict each other are off at least.
+const CONTRADICTION: f64 = 0.02;
 
 /// Newton's iterations at a tick. From the last tick's pose two reach rounding, from the first
 /// guess five; the loop ends early when the step is that small.
@@ -95,15 +104,17 @@ impl Estimator {
             pose_information: [[0.0; 3]; 3],
             shared_information: [[0.0; 3]; 3],
             bias_information: Matrix3::from_diagonal_element(information(deviations.length_bias)).into(),
+            misfit: 0.0,
         }
     }
 
     /// The estimate at a tick; remembers it.
     pub fn update(&mut self, geometry: &Geometry<f64>, measured: &Measurement<f64>) -> Estimate<f64> {
-        let fit = self.fit(geometry, measured, &self.s.into(), false);
+        let fit = self.find(geometry, measured, &self.s.into());
         self.s = fit.estimate.s.into();
         self.s_dot = fit.estimate.s_dot.into();
         self.biases = fit.biases.into();
+        self.misfit = fit.misfit;
         // The pose given the static errors is known less well at the next tick, and they alone as well as now: that
         // leaves their marginal information errors-errors - errors-pose pose-pose^-1 pose-errors as it is.
         let Fit { pose_information, shared_information, bias_information, .. } = fit;
@@ -113,6 +124,26 @@ impl Estimator {
         self.bias_information =
             (bias_information - shared_information.tr_mul(&of_pose) * (1.0 - self.retention)).into();
         fit.estimate
+    }
+
+    /// By how much the readings of the last tick contradict each other, m, as if all of it were one length's error:
+    /// `None` where they fit a pose, but for noise.
+    pub fn contradiction(&self) -> Option<f64> {
+        let length = (self.misfit / self.length_information).sqrt();
+        (self.misfit > SUSPICIOUS && length > CONTRADICTION).then_some(length)
+    }
+
+    /// [`fit`](Self::fit) from `guess`. Where that ends in a false minimum, as it can far from the truth, the plane through the
+    /// platform's joints is the guess.
+    pub fn find(&self, geometry: &Geometry<f64>, measured: &Measurement<f64>, guess: &Vector3<f64>) -> Fit<f64> {
+        let fit = self.fit(geometry, measured, guess, false);
+        if fit.misfit <= SUSPICIOUS {
+            return fit;
+        }
+        let plane = geometry.pose_of_joints(measured.lengths.into(), measured.angles.into());
+        let other = self.fit(geometry, measured, &plane, false);
+        // a difference within rounding is none
+        if other.misfit < 0.5 * fit.misfit { other } else { fit }
     }
 
     /// What [`update`](Self::update) would estimate, searched from `guess` and in any number type: Gauss-Newton over
@@ -171,7 +202,9 @@ impl Estimator {
             let converged = step.amax().partial_cmp(&constant(CONVERGED)) != Some(Ordering::Greater);
             if iteration == ITERATIONS || (converged && !exact) {
                 let estimate = Estimate { s, s_dot };
-                return Fit { estimate, biases, pose_information, shared_information, bias_information };
+                let misfit =
+                    length_error.norm_squared() * length_information + angle_error.norm_squared() * angle_information;
+                return Fit { estimate, biases, pose_information, shared_information, bias_information, misfit };
             }
         }
     }

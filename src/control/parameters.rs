@@ -6,6 +6,7 @@ use super::holding::HoldingTerm;
 use super::mpso::{Settings, SettingsError};
 use super::{Damping, Mode, Profile, SensorParameters};
 use crate::defaults as d;
+use crate::dynamics::solver::SolverError;
 use crate::dynamics::{MechanismParameters, ParameterError};
 
 /// Feedback gains (4.5b).
@@ -79,8 +80,13 @@ pub enum ControlError {
     Swarm(#[from] SettingsError),
     #[error("{name} = {value} must be {condition}")]
     OutOfRange { name: &'static str, value: f64, condition: &'static str },
-    #[error("the measurements fit no pose of the mechanism: limb lengths {lengths:?} m, angles {angles:?} rad")]
-    NoPose { lengths: [f64; 3], angles: [f64; 3] },
+    #[error(
+        "the measurements fit no pose of the mechanism: limb lengths {lengths:?} m, angles {angles:?} rad, \
+         at rates {length_rates:?} m/s, {angle_rates:?} rad/s"
+    )]
+    NoPose { lengths: [f64; 3], angles: [f64; 3], length_rates: [f64; 3], angle_rates: [f64; 3] },
+    #[error("the prediction over the computation delay fails: {0}")]
+    Prediction(SolverError),
     #[error("the control law gave no finite voltages; gains, damping or measured rates are out of any sensible range")]
     NotFinite,
 }

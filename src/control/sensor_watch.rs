@@ -5,6 +5,7 @@
 //! same to the last bit although the reading of its own rate kept one sign and was large enough to
 //! carry it over twice its resolution in that time. A mechanism at rest, a quantized sensor and
 //! noise of either sign around zero raise no alarm; a frozen reading is found once its limb moves.
+//! What the control law makes no use of may be missing for ever, it is reported and that is all.
 //! Frozen rates and currents cannot be told from constant ones and are not looked for.
 
 use serde::{Deserialize, Serialize};
@@ -16,6 +17,27 @@ pub const CHANNELS: usize = 21;
 
 /// Limb lengths and angles, by place among the channels, and the places of their rates.
 const POSITIONS: [(usize, usize); 6] = [(0, 3), (1, 4), (2, 5), (6, 9), (7, 10), (8, 11)];
+
+/// Places of the currents of the revolute motors and of the acceleration.
+const REVOLUTE_CURRENTS: u32 = 0b111 << 15;
+const ACCELERATION: u32 = 0b111 << 18;
+
+/// Which of the channels that not every control law needs are used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Used {
+    /// Of the revolute motors.
+    pub revolute_currents: bool,
+    /// Of P.
+    pub acceleration: bool,
+}
+
+impl Used {
+    /// Bits by channel.
+    fn channels(self) -> u32 {
+        let unless = |used: bool, channels: u32| if used { 0 } else { channels };
+        !(unless(self.revolute_currents, REVOLUTE_CURRENTS) | unless(self.acceleration, ACCELERATION))
+    }
+}
 
 /// Fresh readings in a row that have to agree: two could by chance where they come seldom.
 const AGREEING: u32 = 3;
@@ -96,8 +118,8 @@ impl SensorWatch {
 
     /// Checks a tick's measurement and returns it with the last valid readings in place of missing
     /// ones. `fresh` tells that the host had the chance to provide new readings since the last
-    /// tick: several ticks within one communication step see the same.
-    pub fn check(&mut self, measured: &Measurement<f64>, fresh: bool) -> Measurement<f64> {
+    /// tick: several ticks within one communication step see the same. Only what is `used` leads to a cut-off.
+    pub fn check(&mut self, measured: &Measurement<f64>, fresh: bool, used: Used) -> Measurement<f64> {
         let readings = measured.to_array();
         let mut missing = 0;
         for (channel, &reading) in readings.iter().enumerate() {
@@ -131,7 +153,9 @@ impl SensorWatch {
                 frozen |= 1 << channel;
             }
         }
-        let overdue = self.missing_for.iter().any(|&ticks| f64::from(ticks) >= self.patience);
+        let used = used.channels();
+        let missed = |(channel, &ticks): (usize, &u32)| used & (1 << channel) != 0 && f64::from(ticks) >= self.patience;
+        let overdue = self.missing_for.iter().enumerate().any(missed);
         self.faults = SensorFaults { missing, frozen, cut_off: overdue || frozen != 0 };
         Measurement::from_array(&self.valid)
     }
@@ -143,6 +167,7 @@ mod tests {
 
     const TICK: f64 = 1e-3;
     const TIMEOUT: f64 = 0.02;
+    const ALL: Used = Used { revolute_currents: true, acceleration: true };
 
     fn watch() -> SensorWatch {
         SensorWatch::new(TIMEOUT, TICK, &SensorParameters::default())
@@ -160,7 +185,7 @@ mod tests {
     }
 
     fn tick(watch: &mut SensorWatch, readings: &[f64; CHANNELS]) -> (Measurement<f64>, SensorFaults) {
-        let used = watch.check(&Measurement::from_array(readings), true);
+        let used = watch.check(&Measurement::from_array(readings), true, ALL);
         (used, watch.faults())
     }
 
@@ -179,6 +204,23 @@ mod tests {
         readings[4] = 0.25;
         let (used, faults) = tick(&mut watch, &readings);
         assert_eq!((used.length_rates[1], faults), (0.25, SensorFaults::default()), "it recovers");
+    }
+
+    #[test]
+    fn what_is_not_used_may_be_missing_for_ever() {
+        for (channel, used) in
+            [(15, Used { revolute_currents: false, ..ALL }), (20, Used { acceleration: false, ..ALL })]
+        {
+            for (used, cut_off) in [(used, false), (ALL, true)] {
+                let mut watch = watch();
+                let mut readings = moving(0.0, 0.0, 0.0);
+                readings[channel] = f64::NAN;
+                for _ in 0..30 {
+                    watch.check(&Measurement::from_array(&readings), true, used);
+                }
+                assert_eq!(watch.faults(), SensorFaults { missing: 1 << channel, frozen: 0, cut_off });
+            }
+        }
     }
 
     #[test]
@@ -225,7 +267,7 @@ mod tests {
         let mut watch = watch();
         for k in 0..3000 {
             let readings = moving(f64::from(k / 1000), 0.05, 0.0);
-            watch.check(&Measurement::from_array(&readings), k % 1000 == 0);
+            watch.check(&Measurement::from_array(&readings), k % 1000 == 0, ALL);
             assert!(!watch.faults().any(), "tick {k}");
         }
     }

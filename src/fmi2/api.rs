@@ -150,19 +150,19 @@ on_instance! {
 
     /// `fmi2GetReal`
     get_real(instance, vr: *const ValueReference, count: usize, value: *mut f64) as GetReal {
-        apart(array(value, count, "value"), [array(vr, count, "vr")])?;
+        apart(array(value, count, "value")?, [array(vr, count, "vr")?])?;
         instance.get_real(slice(vr, count, "vr")?, slice_mut(value, count, "value")?)
     }
 
     /// `fmi2GetInteger`
     get_integer(instance, vr: *const ValueReference, count: usize, value: *mut c_int) as GetInteger {
-        apart(array(value, count, "value"), [array(vr, count, "vr")])?;
+        apart(array(value, count, "value")?, [array(vr, count, "vr")?])?;
         instance.get_integer(slice(vr, count, "vr")?, slice_mut(value, count, "value")?)
     }
 
     /// `fmi2GetBoolean`
     get_boolean(instance, vr: *const ValueReference, count: usize, value: *mut Boolean) as GetBoolean {
-        apart(array(value, count, "value"), [array(vr, count, "vr")])?;
+        apart(array(value, count, "value")?, [array(vr, count, "vr")?])?;
         instance.get_boolean(slice(vr, count, "vr")?, slice_mut(value, count, "value")?)
     }
 
@@ -244,11 +244,11 @@ on_instance! {
         instance, unknowns: *const ValueReference, unknown_count: usize, knowns: *const ValueReference, known_count: usize,
         seed: *const f64, derivative: *mut f64
     ) as GetDirectionalDerivative {
-        let results = array(derivative, unknown_count, "dvUnknown");
+        let results = array(derivative, unknown_count, "dvUnknown")?;
         let arguments = [
-            array(unknowns, unknown_count, "vUnknown_ref"),
-            array(knowns, known_count, "vKnown_ref"),
-            array(seed, known_count, "dvKnown"),
+            array(unknowns, unknown_count, "vUnknown_ref")?,
+            array(knowns, known_count, "vKnown_ref")?,
+            array(seed, known_count, "dvKnown")?,
         ];
         apart(results, arguments)?;
         instance.get_directional_derivative(
@@ -325,7 +325,7 @@ on_instance! {
     get_real_output_derivatives(
         instance, vr: *const ValueReference, count: usize, order: *const c_int, value: *mut f64
     ) as GetRealOutputDerivatives {
-        apart(array(value, count, "value"), [array(vr, count, "vr"), array(order, count, "order")])?;
+        apart(array(value, count, "value")?, [array(vr, count, "vr")?, array(order, count, "order")?])?;
         instance.get_real_output_derivatives(
             slice(vr, count, "vr")?,
             slice(order, count, "order")?,

@@ -106,10 +106,13 @@ fn impossible_array(null: bool, aligned: bool, length: usize, name: &str) -> Cal
 /// An array that a caller passed, as an address, its length in bytes and its name.
 pub(super) type Array<'a> = (usize, usize, &'a str);
 
-/// What C passed as `pointer` and `length`.
+/// What C passed as `pointer` and `length`, if it can be an array.
 #[inline]
-pub(super) fn array<T>(pointer: *const T, length: usize, name: &str) -> Array<'_> {
-    (pointer.addr(), length.saturating_mul(size_of::<T>()), name)
+pub(super) fn array<T>(pointer: *const T, length: usize, name: &str) -> CallResult<Array<'_>> {
+    if length > 0 {
+        check_array(pointer, length, name)?;
+    }
+    Ok((pointer.addr(), length * size_of::<T>(), name))
 }
 
 /// Refuses results that would be written over one of the arguments.

@@ -36,7 +36,8 @@ impl<M: Model> Instance<M> {
     pub(super) fn do_step(&mut self, point: f64, step: f64) -> CallResult {
         let (from, to) = self.check_step(point, step)?;
         self.now.input_derivatives.begin_step(from);
-        if !self.now.model.idle_until(to) {
+        let idle = self.now.input_derivatives.constant() && self.now.model.idle_until(to);
+        if !idle {
             self.advance(from, to)?;
         }
         self.now.input_derivatives.step_done();
@@ -48,6 +49,7 @@ impl<M: Model> Instance<M> {
     fn advance(&mut self, from: f64, to: f64) -> CallResult {
         self.back_up();
         let Snapshot { model, values, input_derivatives, .. } = &mut self.now;
+        input_derivatives.lead(self.layout, &mut values.reals, to);
         let inputs = Inputs::new(self.layout, &self.step_start.1.reals, input_derivatives);
         let result = model
             .step(values, &inputs, from, to, &mut self.logger)

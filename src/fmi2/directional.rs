@@ -43,8 +43,11 @@ impl<M: Model> Instance<M> {
             self.scratch.1.push(slot);
             self.scratch.2.push(factor);
         }
-        self.refresh().map_err(CallError::without_discard)?;
         let initialization = self.now.mode == Mode::Initialization;
+        if initialization {
+            // elsewhere the equations stand by themselves, whatever becomes of the outputs
+            self.refresh().map_err(CallError::without_discard)?;
+        }
         let Snapshot { model, values, .. } = &mut self.now;
         let (unknowns, knowns, seed) = &self.scratch;
         let direction = Direction { initialization, knowns, seed };

@@ -88,6 +88,18 @@ impl InputDerivatives {
         };
     }
 
+    /// Leads the inputs among the Real values by slot from the step's start, where they were set, to `t`, its end.
+    pub fn lead(&self, layout: &Layout, reals: &mut [f64], t: f64) {
+        if self.constant() {
+            return;
+        }
+        for (value, entry) in reals.iter_mut().zip(&layout.reals.entries) {
+            if let Some(input) = entry.continuous_input {
+                *value += self.deviation(input, t);
+            }
+        }
+    }
+
     /// Deviation of `input` from its value at the origin, at time `t`.
     fn deviation(&self, input: usize, t: f64) -> f64 {
         horner(&self.terms[input], t - self.origin, |k| 1.0 / (k + 1) as f64) * (t - self.origin)

@@ -116,7 +116,8 @@ pub trait Model: Clone + Serialize + DeserializeOwned + Send + 'static {
         false
     }
 
-    /// Advances from `from` to `to` (Co-Simulation) and writes the calculated variables there.
+    /// Advances from `from` to `to` (Co-Simulation) and writes the calculated variables there. `values` has the inputs as
+    /// they are at `to`, `inputs` those on the way.
     /// On error the layer restores model and values as they were before the call.
     fn step(
         &mut self,

@@ -34,12 +34,32 @@ impl<T: Scalar> Geometry<T> {
     /// Position of P, m, from limb lengths (m) and angles (rad): mean(B_i), without asking
     /// whether the three points fit a rigid platform. The paper's P formula (section 6.1).
     pub fn mean_joint_position(&self, lengths: [T; 3], angles: [T; 3]) -> Vector3<T> {
-        let mut sum = Vector3::zeros();
-        for i in 0..3 {
-            let (sin, cos) = angles[i].sine_cosine();
-            sum += self.radial[i] * (self.base_radius - lengths[i] * cos);
-            sum.z += lengths[i] * sin;
+        let [a, b, c] = self.joints(lengths, angles);
+        (a + b + c) / constant::<T>(3.0)
+    }
+
+    /// (heave in m, tilt_x, tilt_y in rad) of the plane through the three B_i, from limb lengths (m) and angles (rad):
+    /// the pose of readings that fit one, without a guess.
+    pub fn pose_of_joints(&self, lengths: [T; 3], angles: [T; 3]) -> Vector3<T> {
+        let [a, b, c] = self.joints(lengths, angles);
+        let normal = (b - a).cross(&(c - a));
+        let horizontal = (normal.x * normal.x + normal.y * normal.y).sqrt();
+        let heave = (a.z + b.z + c.z) / constant::<T>(3.0);
+        if horizontal > T::zero() {
+            let scale = horizontal.angle_beside(normal.z) / horizontal;
+            Vector3::new(heave, -normal.y * scale, normal.x * scale)
+        } else {
+            Vector3::new(heave, T::zero(), T::zero())
         }
-        sum / constant::<T>(3.0)
+    }
+
+    /// Positions of the B_i, m.
+    fn joints(&self, lengths: [T; 3], angles: [T; 3]) -> [Vector3<T>; 3] {
+        std::array::from_fn(|i| {
+            let (sin, cos) = angles[i].sine_cosine();
+            let mut joint = self.radial[i] * (self.base_radius - lengths[i] * cos);
+            joint.z += lengths[i] * sin;
+            joint
+        })
     }
 }

@@ -217,6 +217,17 @@ impl<M: Fmu> Slave<M> {
         call!(self, setup_experiment(0, 0.0, start, c_int::from(stop.is_some()), stop.unwrap_or(0.0)))
     }
 
+    /// As [`setup`](Self::setup) from 0 s on without an end, with a relative tolerance.
+    pub fn setup_tolerance(&self, tolerance: f64) -> Status {
+        call!(self, setup_experiment(1, tolerance, 0.0, 0, 0.0))
+    }
+
+    /// The rate of an input, for the step to come.
+    pub fn set_input_derivative(&self, name: &str, rate: f64) {
+        let reference = Self::reference(name, VariableType::Real);
+        assert_eq!(call!(self, set_real_input_derivatives(&reference, 1, &1, &rate)), Status::Ok);
+    }
+
     /// Initialization Mode from end to end; the outcome of its last call.
     fn initialization(&self) -> Status {
         assert_eq!(call!(self, enter_initialization_mode()), Status::Ok);

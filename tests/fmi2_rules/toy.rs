@@ -265,7 +265,6 @@ impl Model for Oscillator {
             t = end;
         }
         self.states = y;
-        values.reals[slot::U] = inputs.at(slot::U, to);
         self.write(values)
     }
 

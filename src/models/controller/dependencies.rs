@@ -44,6 +44,8 @@ pub fn dependencies(name: &str, all: &[String]) -> Vec<String> {
         "err_position" => [&time[..], &estimate, &inputs.reference].concat(),
         "err_rotation" => [&time[..], &estimate, &inputs.reference[1..]].concat(),
         "sensor_fault" => inputs.measurements(),
+        // three motors have it, and no currents of others
+        "lambda_f" => all.iter().filter(|known| !known.starts_with("i_rev")).cloned().collect(),
         _ => all.to_vec(),
     }
 }

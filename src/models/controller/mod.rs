@@ -34,9 +34,10 @@ pub struct Controller {
     tick: u64,
 }
 
-/// A tick this fraction of the sample time ahead is due: masters add up step sizes, and their
-/// times drift by rounding.
-const DUE: f64 = 1e-6;
+/// A tick this far ahead of `time` is due: masters add up step sizes, and their times drift by rounding.
+fn due_ahead(time: f64, sample_time: f64) -> f64 {
+    1e-6 * sample_time + 4.0 * f64::EPSILON * time.abs()
+}
 
 /// Work (see [`Core::work`]) of one call: half a minute at most, after which the host deserves an
 /// answer. The default controller needs less than three quarters of it for 100 s.
@@ -283,7 +284,7 @@ impl Controller {
     /// Whether a tick belongs to a step that ends at `to`, s. One at `to` itself belongs to the next: the master has
     /// yet to set the inputs for it.
     fn is_due_before(&self, to: f64) -> bool {
-        self.due() < to - DUE * self.sample_time
+        self.due() < to - due_ahead(to, self.sample_time)
     }
 
     /// Makes the due tick with these inputs, `fresh` if the host may have set them since the last.
@@ -296,7 +297,7 @@ impl Controller {
     ) -> ModelResult {
         let core = self.core.as_mut().ok_or_else(not_initialized)?;
         let t = self.tick as f64 * self.sample_time;
-        let before = core.sensor_faults();
+        let (before, contradicted) = (core.sensor_faults(), core.contradiction().is_some());
         let measured = with_gaps(values, &measured);
         let diagnostics = core
             .watched_tick(t, &measured, fresh, &external, &tuning(values))
@@ -304,6 +305,12 @@ impl Controller {
         let faults = core.sensor_faults();
         if faults != before {
             report(before, faults, log);
+        }
+        if let (false, Some(length)) = (contradicted, core.contradiction()) {
+            log.warning(&format!(
+                "the measurements contradict each other: the pose that fits them best leaves an error of {:.0} mm",
+                1e3 * length
+            ));
         }
         write(values, &diagnostics, faults.any());
         self.tick += 1;
@@ -468,7 +475,7 @@ impl Model for Controller {
         self.make_ticks(
             values,
             time,
-            |controller| controller.due() <= time + DUE * controller.sample_time,
+            |controller| controller.due() <= time + due_ahead(time, controller.sample_time),
             |values, _| inputs_from(|slot| values.reals[slot]),
             log,
         )?;

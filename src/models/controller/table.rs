@@ -177,7 +177,7 @@ fn reals() -> Vec<Variable> {
         real(2012, "decay_min", None, d::DECAY_MIN, 0.0, INF, "Last decay scale, the paper's rho_min (3.5)")
             .nominal(0.01),
         real(2013, "regulating_scale", None, d::REGULATING_SCALE, 0.0, INF, "Regulating scale R (3.5)"),
-        real(2014, "velocity_limit", None, d::VELOCITY_LIMIT, 0.0, 1.0, "Largest step of a particle by search range"),
+        real(2014, "velocity_limit", None, d::VELOCITY_LIMIT, 1e-9, 1.0, "Largest step of a particle by search range"),
         real(2015, "rho_max", None, d::RHO_MAX, 0.0, INF, "Search range of rho: largest"),
         real(2016, "delta_hd_max", None, d::DELTA_HD_MAX, 0.0, INF, "Search range of delta_hd: largest").nominal(0.1),
         real(2017, "lambda_f_max", None, d::LAMBDA_F_MAX, 0.0, INF, "Search range of lambda_f: largest"),
@@ -336,6 +336,13 @@ fn integers() -> Vec<Variable> {
         ),
         integer(2005, "seed", d::SEED, 0, i32::MAX, "Seed of all random numbers"),
         integer(2006, "reference_mode", 1, 1, 2, "1 internal waypoints, 2 inputs ref_*"),
-        integer(2007, "profile", 2, 1, 2, "1 constant speed of P with short blends, 2 quintic time law"),
+        integer(
+            2007,
+            "profile",
+            2,
+            1,
+            2,
+            "1 constant rate of the path parameter with short blends, 2 quintic time law",
+        ),
     ]
 }

@@ -222,7 +222,8 @@ impl Model for Plant {
             );
         }
         let own = values.reals[slots.relative_tolerance];
-        self.tolerance = if own > 0.0 { own } else { experiment.tolerance.unwrap_or(crate::defaults::TOLERANCE) };
+        let theirs = experiment.tolerance.unwrap_or(crate::defaults::TOLERANCE);
+        self.tolerance = if own > 0.0 { own } else { theirs.min(table::LARGEST_TOLERANCE) };
         self.max_step = values.reals[slots.max_step];
         self.parameters = parameters;
         self.model = model;
@@ -259,11 +260,7 @@ impl Model for Plant {
         } else {
             let first = table().1.inputs;
             let u = |t: f64| inputs_from(|k| step_inputs.at(first + k, t));
-            let outcome = self.solver.integrate(|t, x| derivative(model, x, &u(t)), &mut self.x, from, to, &settings);
-            for k in 0..12 {
-                values.reals[first + k] = step_inputs.at(first + k, to);
-            }
-            outcome
+            self.solver.integrate(|t, x| derivative(model, x, &u(t)), &mut self.x, from, to, &settings)
         };
         outcome.map_err(|error| ModelError::Discard(error.to_string()))?;
         self.write(values);

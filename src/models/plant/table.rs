@@ -1,11 +1,15 @@
 //! Variable table of Rps3Plant.
 
+use std::f64::consts::PI;
+
 use super::dependencies::{dependencies, initial_dependencies};
 use crate::defaults as d;
 use crate::description::{Capabilities, Causality, DefaultExperiment, Definition, Unknown, Variable};
 use crate::models::common_table::{COORDINATE_UNITS, RATE_UNITS, coordinates, mechanism_parameters, names, per_limb};
 
 const INF: f64 = f64::INFINITY;
+/// Largest relative tolerance of the solver; beyond it nothing would be held.
+pub(super) const LARGEST_TOLERANCE: f64 = 0.1;
 
 /// The model description of Rps3Plant.
 pub fn definition() -> Definition {
@@ -186,8 +190,8 @@ fn parameters() -> Vec<Variable> {
     vec![
         real(2000, "d_min", Some("m"), d::D_MIN, -INF, INF, "End stop: shortest limb").display("cm"),
         real(2001, "d_max", Some("m"), d::D_MAX, -INF, INF, "End stop: longest limb").display("cm"),
-        real(2002, "theta_min", Some("rad"), d::THETA_MIN, -INF, INF, "End stop: lowest limb angle").display("deg"),
-        real(2003, "theta_max", Some("rad"), d::THETA_MAX, -INF, INF, "End stop: highest limb angle").display("deg"),
+        real(2002, "theta_min", Some("rad"), d::THETA_MIN, -PI, PI, "End stop: lowest limb angle").display("deg"),
+        real(2003, "theta_max", Some("rad"), d::THETA_MAX, -PI, PI, "End stop: highest limb angle").display("deg"),
         real(
             2004,
             "stop_stiffness",
@@ -217,7 +221,7 @@ fn parameters() -> Vec<Variable> {
             None,
             0.0,
             0.0,
-            0.1,
+            LARGEST_TOLERANCE,
             "Co-simulation solver's tolerance; 0: that of the experiment",
         )
         .nominal(1e-6),
