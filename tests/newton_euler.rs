@@ -273,7 +273,7 @@ proptest! {
         }
         // erratum: six equations, three unknowns; the lateral forces, which it leaves out, are no rounding errors
         let r = reactions(&m, &e, &Inputs::zero());
-        prop_assert!(printed.rank(1e-9) <= 3 && r.lateral.amax() > 0.0);
+        prop_assert!(r.lateral.amax() > 1e-4 * r.axial.amax(), "{} {}", r.lateral, r.axial);
     }
 }
 

@@ -260,6 +260,20 @@ fn inputs_with_derivatives_end_where_these_lead() {
 }
 
 #[test]
+fn a_start_pose_or_waypoint_tilted_by_a_right_angle_is_refused() {
+    let plant = Slave::<Plant>::new();
+    let wide = [("theta_min", -3.1), ("theta_max", 3.1), ("d_min", 0.002), ("d_max", 5.0)];
+    let tilted = [("tilt_x_start", 1.2), ("tilt_y_start", 1.2)];
+    assert_eq!(plant.set_reals(&[wide.to_vec(), tilted.to_vec()].concat()), Status::Ok);
+    assert_eq!(plant.try_initialize(), Status::Error);
+    assert!(plant.take_messages().iter().any(|m| m.text.contains("is 90 deg or more")));
+    let controller = Slave::<Controller>::new();
+    assert_eq!(controller.set_reals(&[("via_tilt_x", 1.2), ("via_tilt_y", 1.2)]), Status::Ok);
+    assert_eq!(controller.try_initialize(), Status::Error);
+    assert!(controller.take_messages().iter().any(|m| m.text.contains("a tilt below 90 deg")));
+}
+
+#[test]
 fn work_for_one_call_ends_with_a_discard_and_not_with_a_hang() {
     let plant = Slave::<Plant>::new();
     assert_eq!(plant.set_real("max_step", 1e-6), Status::Ok);

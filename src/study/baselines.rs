@@ -39,7 +39,7 @@ impl VariableDamping {
     /// in the form of S. Chiaverini, IEEE Trans. Robot. Autom. 13 (1997).
     pub const MACIEJEWSKI_KLEIN: Self = Self { measure: Measure::SmallestSingularValue, largest: 0.05, threshold: 0.1 };
 
-    /// The damping at the pose `s` (m, rad, rad); the force distribution follows it as in the fixed modes.
+    /// The damping at the pose `s` (m, rad, rad); the force distribution's is that of the fixed modes.
     pub fn damping(&self, geometry: &Geometry<f64>, s: &Vector3<f64>) -> Damping<f64> {
         let jacobian = OverallJacobian::new(geometry, &Limb::all(geometry, &Pose::new(geometry, s)));
         let share = match self.measure {

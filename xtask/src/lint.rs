@@ -22,6 +22,8 @@ pub fn run() -> Result<()> {
         let clippy = ["clippy", "--locked", "--all-targets", &manifest, &target, "--", "-D", "warnings"];
         command::run(&mut command::cargo(&clippy))?;
     }
+    // its targets build with a nightly compiler only
+    command::run(&mut command::cargo(&["fmt", "--check", "--manifest-path=fuzz/Cargo.toml"]))?;
     let mut doc = command::cargo(&["doc", "--workspace", "--no-deps", "--quiet"]);
     command::run(doc.env("RUSTDOCFLAGS", "-D warnings"))?;
     let python_code = ["python", "tests/python", "examples", "benches"];

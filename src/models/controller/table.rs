@@ -111,7 +111,15 @@ fn outputs() -> Vec<Variable> {
     list.push(output(109, "lambda_f", None, "Damping of the force distribution in force").nominal(0.1));
     list.push(output(110, "sigma_min", None, "Smallest singular value of J at the estimated pose").nominal(0.1));
     list.push(output(111, "lyapunov", Some("m2/s2"), "Lyapunov function (5.2)").nominal(1e-4));
-    list.push(output(112, "lyapunov_dot", Some("m2/s3"), "Rate of the Lyapunov function (5.6)").nominal(1e-4));
+    list.push(
+        output(
+            112,
+            "lyapunov_dot",
+            Some("m2/s3"),
+            "Rate of the Lyapunov function (5.5); (5.6) while the reference rests",
+        )
+        .nominal(1e-4),
+    );
     for (k, (suffix, text)) in [("_est", "Estimate of"), ("_ref", "Reference of")].into_iter().enumerate() {
         for (i, name) in coordinates("").iter().enumerate() {
             let (unit, display) = COORDINATE_UNITS[i];
