@@ -3,12 +3,13 @@
 use nalgebra::{Vector3, Vector6};
 use proptest::prelude::*;
 use rps3::control::{
-    Damping, Estimate, Estimator, Fitness, ForceDistribution, Reference, SingularBasis, Situation, Tuning,
-    fitness_of_currents,
+    Controller, Damping, Estimate, Estimator, Fitness, ForceDistribution, Mode, Reference, ReferencePoint,
+    SingularBasis, Situation, Tuning, fitness_of_currents,
 };
 use rps3::coupling::measure;
 use rps3::defaults as d;
 use rps3::dynamics::{Inputs, PlantModel, PlantState};
+use rps3::mechanism::singular_heights;
 use rps3::study::{Crossing, MODES, in_parallel};
 
 const SAMPLE_TIME: f64 = 1e-3;
@@ -129,3 +130,41 @@ fn three_motors_find_the_dense_grids_optimum_within_1_percent_in_99_percent_of_t
 const SEEDS: [u64; 10] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10];
 /// Of the ticks of each run, one in so many is compared.
 const STRIDE: usize = 7;
+
+/// Where sigma_min is zero, too, the damping in force is the one that the swarm has judged.
+#[test]
+fn at_an_exactly_singular_pose_the_damping_found_is_the_damping_in_force() {
+    for six in [true, false] {
+        let mut experiment = Crossing::default().experiment(six);
+        experiment.tuning.mode = Mode::HdracMpso;
+        experiment.controller.waypoints[0] = experiment.controller.waypoints[1];
+        let model = PlantModel::<f64>::without_stops(&experiment.controller.mechanism);
+        let [via, tilt_x, tilt_y] = experiment.controller.waypoints[0];
+        let heights = singular_heights(&model.geometry, tilt_x, tilt_y);
+        let heave = heights.iter().copied().min_by(|a, b| (a - via).abs().total_cmp(&(b - via).abs())).unwrap();
+        let s = Vector3::new(heave, tilt_x, tilt_y);
+        for seed in 0..20 {
+            let s_dot = Vector3::new(-0.09, 0.02 * f64::from(seed - 10), 0.1);
+            let mut x = PlantState::zeros();
+            x.fixed_rows_mut::<3>(0).copy_from(&s);
+            x.fixed_rows_mut::<3>(3).copy_from(&s_dot);
+            let measured = measure(&model, &x, &Inputs::zero());
+            let mut controller = Controller::new(experiment.controller).unwrap();
+            let external = ReferencePoint::default();
+            let found = controller.tick(0.0, &measured, &external, &experiment.tuning, false).unwrap();
+            assert!(found.sigma_min < 1e-12, "{}", found.sigma_min);
+            let estimate = Estimate { s: found.estimate, s_dot };
+            let r_b = model.geometry.joint_radius;
+            let p = &experiment.controller;
+            let path = Reference::new(p.waypoints.map(Vector3::from), p.move_time, p.profile, r_b);
+            let situation = Situation::new(&model, &estimate, &path.at(0.0), &measured, &experiment.tuning.gains);
+            let (basis, distribution) = (SingularBasis::new(&situation), ForceDistribution::new(&model, &situation));
+            let ahead = path.at(experiment.tuning.horizon);
+            let fitness =
+                Fitness::new(&model, &situation, &basis, &distribution, &ahead, &experiment.tuning, SAMPLE_TIME);
+            let in_force = fitness.of_factors(found.damping.rho, found.rho_hd, found.damping.lambda_f);
+            let difference = (in_force - found.fitness).abs();
+            assert!(difference <= 1e-6 * in_force.max(1e-10), "{in_force:e} {:e}", found.fitness);
+        }
+    }
+}

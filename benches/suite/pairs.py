@@ -70,6 +70,6 @@ def measure(native: Native, plant: Fmu, controller: Fmu, rounds: int) -> tuple[l
         for key, way in {"native": "in process, without FMI", **ways}.items():
             seconds = times[key]
             share = f"controller {part['controller'] / seconds:.0%}, plant {part['plant'] / seconds:.0%}"
-            cells.append([name, way, duration(seconds), f"{TICK / seconds:.0f}", "" if key == "native" else share])
+            cells.append([name, way, duration(seconds), f"{TICK / seconds:.0f}", share if key == "C" else ""])
     head = ["control mode", "way", "a tick", "times real time", "of which `fmi2DoStep`"]
     return rows, Listing("pair", head, cells)

@@ -45,10 +45,14 @@ pub struct Damping<T> {
 /// rounding leaves of sigma^2 anywhere else.
 pub const SMALLEST_SQUARE: f64 = 1e-18;
 
+/// A sigma_min that small is no other than zero: a delta_hd below it could not be told from none.
+pub const SMALLEST_SIGMA: f64 = 1e-15;
+
 impl<T: Scalar> Damping<T> {
     /// rho_hd (4.16), 1/s, at the smallest singular value `sigma_min`.
     #[inline]
     pub fn rho_hd(&self, sigma_min: T, sample_time: T) -> T {
+        let sigma_min = sigma_min.max(constant(SMALLEST_SIGMA));
         if sigma_min < self.delta_hd { (T::one() - sigma_min / self.delta_hd) / sample_time } else { T::zero() }
     }
 

@@ -4,6 +4,7 @@ use rand::Rng;
 use rand::distr::{Distribution, StandardUniform};
 use serde::{Deserialize, Serialize};
 
+use super::damping::SMALLEST_SIGMA;
 use super::mpso::{Bounds, Progress, SettingsError, Solution, Swarm};
 use super::parameters::SwarmParameters;
 use super::{Damping, Fitness};
@@ -44,8 +45,6 @@ const UNHELD: usize = 4;
 const UNHELD_DISTANCE: f64 = 0.05;
 /// Initial individuals that are not scattered over all dampings, at most.
 const STARTS: usize = QUARTERS + NEIGHBOURS + OTHERS.len() + UNHELD;
-/// A sigma_min that small is no other than zero.
-const SMALLEST_SIGMA: f64 = 1e-12;
 
 impl Search {
     /// # Errors
