@@ -65,7 +65,9 @@ def compiled(compiler: str, source: str, output: str, *options: str | Path) -> P
         return None
     BUILD.mkdir(parents=True, exist_ok=True)
     target, path = BUILD / output, SOURCES / source
-    if not target.exists() or target.stat().st_mtime < path.stat().st_mtime:
+    # what it includes and how it is compiled counts as well
+    sources = [*SOURCES.iterdir(), Path(__file__)]
+    if not target.exists() or target.stat().st_mtime < max(file.stat().st_mtime for file in sources):
         subprocess.run([program, str(path), "-o", str(target), *map(str, options)], check=True)
     return target
 

@@ -5,7 +5,7 @@
 //! from [`instantiate`], of this model or another, and was not freed, arrays have the stated lengths,
 //! strings end with NUL, and the logger returns. All else (null pointers, wrong references, wrong order,
 //! non-finite numbers, corrupted states, components of another FMU, calls from within the logger or
-//! from two threads at once) is checked.
+//! from two threads at once, as long as neither frees the instance) is checked.
 #![allow(clippy::missing_safety_doc)] // said once, above
 #![allow(clippy::too_many_arguments)] // the standard's signatures
 
