@@ -96,7 +96,7 @@ impl<M: Model> Instance<M> {
 
     #[cold]
     fn impossible(&self, fault: StepFault, point: f64, step: f64) -> CallError {
-        let from = self.now.time;
+        let (from, to) = (self.now.time, point + step);
         CallError::Refused(match fault {
             StepFault::Size if step.is_finite() && step > 0.0 => {
                 format!("communication step size {step:?} s is larger than {MAX_STEP:?} s")
@@ -108,10 +108,7 @@ impl<M: Model> Instance<M> {
             StepFault::BeyondResolution => {
                 format!("a step of {step:?} s from {point:?} s is beyond the resolution of time")
             }
-            StepFault::PastStopTime(stop) => {
-                let to = point + step;
-                format!("a step to {to:?} s is past the stop time {stop:?} s")
-            }
+            StepFault::PastStopTime(stop) => format!("a step to {to:?} s is past the stop time {stop:?} s"),
         })
     }
 

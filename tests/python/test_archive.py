@@ -36,6 +36,9 @@ def test_licenses_go_with_the_fmu(fmu: Fmu) -> None:
     assert "Apache License" in (licenses / "LICENSE-APACHE.txt").read_text()
     assert "MIT License" in (licenses / "LICENSE-MIT.txt").read_text()
     assert (licenses / "license.txt").exists()
+    # the compiler's page of crates within the standard library, whose code is in the binaries too
+    page = licenses / "rust-standard-library.html"
+    assert not page.exists() or "gimli" in page.read_text()
 
 
 def test_binary_holds_no_path_of_the_machine_that_built_it(fmu: Fmu) -> None:

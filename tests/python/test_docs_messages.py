@@ -8,6 +8,7 @@ SOURCES = ["src/fmi2", "src/models", "src/dynamics", "src/control"]
 MESSAGE = re.compile(
     r"""(?: \#\[error\( | refused?\(\s*(?:format!\()? | let\ message\ =\ format!\(
         | event\( | warning\(\s*(?:&format!\()?
+        | =>\ *\{?\s*format!\(
         | (?:Refused|Warned|Failed|Discard|NoSuchStatus|ModelError::Error)\(\s*(?:format!\()? )
         \s*"((?:[^"\\]|\\.|\\\n)*)" """,
     re.DOTALL | re.VERBOSE,

@@ -6,6 +6,7 @@ use anyhow::{Context, Result};
 
 use crate::archive::Archive;
 use crate::library::Build;
+use crate::licenses;
 use crate::platform::Platform;
 use crate::workspace;
 
@@ -28,7 +29,8 @@ pub const ALL: [Fmu; 2] = [CONTROLLER, PLANT];
 const LICENSE: &str = "\
 The FMU is licensed under the MIT license (LICENSE-MIT.txt) or the Apache License, version 2.0
 (LICENSE-APACHE.txt), at your option. Texts of the licenses of the crates that are linked into it:
-third-party/. Its documentation, ../index.html, lists them.
+third-party/. Its documentation, ../index.html, lists them. Rust's standard library and the crates within it have theirs in
+rust-standard-library.html, if the compiler brought that page.
 ";
 
 impl Fmu {
@@ -69,6 +71,9 @@ impl Fmu {
         archive.insert("documentation/licenses/license.txt", LICENSE);
         for license in ["LICENSE-MIT", "LICENSE-APACHE"] {
             archive.insert_file(format!("documentation/licenses/{license}.txt"), &workspace::root().join(license))?;
+        }
+        if let Some(page) = licenses::of_the_standard_library()? {
+            archive.insert_file("documentation/licenses/rust-standard-library.html", &page)?;
         }
         Ok(archive)
     }

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::PathBuf;
+use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 use cargo_metadata::Package;
@@ -53,6 +54,22 @@ impl Crate {
 /// When a crate comes without.
 pub fn of(crates: &Linked) -> Result<Vec<Crate>> {
     crates.packages.iter().map(Crate::new).collect()
+}
+
+/// The page of licenses that the compiler brings for the standard library, which the FMUs link too; `None`, visibly, where
+/// the compiler was installed without.
+///
+/// # Errors
+/// When the compiler does not say where it is.
+pub fn of_the_standard_library() -> Result<Option<PathBuf>> {
+    let output = Command::new("rustc").args(["--print", "sysroot"]).output().context("cannot start rustc")?;
+    let sysroot = PathBuf::from(String::from_utf8(output.stdout)?.trim());
+    let page = sysroot.join("share/doc/rust/COPYRIGHT-library.html");
+    if page.exists() {
+        return Ok(Some(page));
+    }
+    println!("licenses of the standard library: left out, the compiler comes without {}", page.display());
+    Ok(None)
 }
 
 /// Adds the license texts of `crates` to an FMU's archive.
