@@ -6,7 +6,7 @@ use rps3::control::{ControllerParameters, Measurement};
 use rps3::control::{Damping, Estimate, Gains, Reference, SingularBasis, Situation};
 use rps3::coupling::measure;
 use rps3::defaults as d;
-use rps3::dynamics::{Inputs, PlantModel, PlantParameters, PlantState, derivative};
+use rps3::dynamics::{Inputs, PlantModel, PlantParameters, derivative, moving};
 use rps3::mechanism::Pose;
 use rps3::svd::Svd;
 
@@ -20,17 +20,8 @@ fn situation(s: [f64; 3], s_dot: [f64; 3]) -> (PlantModel<f64>, Situation<f64>) 
 
 fn situation_with(gains: &Gains, s: [f64; 3], s_dot: [f64; 3]) -> (PlantModel<f64>, Situation<f64>) {
     let model = PlantModel::new(&PlantParameters::default());
-    let parameters = ControllerParameters::default();
-    let reference = Reference::new(
-        parameters.waypoints.map(Vector3::from),
-        parameters.move_time,
-        parameters.profile,
-        model.geometry.joint_radius,
-    );
-    let mut x = PlantState::zeros();
-    x.fixed_rows_mut::<3>(0).copy_from(&Vector3::from(s));
-    x.fixed_rows_mut::<3>(3).copy_from(&Vector3::from(s_dot));
-    let measured: Measurement<f64> = measure(&model, &x, &Inputs::zero());
+    let reference = Reference::of(&ControllerParameters::default());
+    let measured: Measurement<f64> = measure(&model, &moving(&s.into(), &s_dot.into()), &Inputs::zero());
     let estimate = Estimate { s: s.into(), s_dot: s_dot.into() };
     let situation = Situation::new(&model, &estimate, &reference.at(0.45), &measured, gains);
     (model, situation)
@@ -136,12 +127,8 @@ proptest! {
         // P by central differences of its position along the reference and along the plant's motion
         let p = |s: Vector3<f64>| Pose::new(&model.geometry, &s).position;
         let second = |at: &dyn Fn(f64) -> Vector3<f64>, h: f64| (p(at(h)) - p(at(0.0)) * 2.0 + p(at(-h))) / (h * h);
-        let parameters = ControllerParameters::default();
-        let waypoints = parameters.waypoints.map(Vector3::from);
-        let reference = Reference::new(waypoints, parameters.move_time, parameters.profile, model.geometry.joint_radius);
-        let mut x = PlantState::zeros();
-        x.fixed_rows_mut::<3>(0).copy_from(&Vector3::from(s));
-        x.fixed_rows_mut::<3>(3).copy_from(&Vector3::from(s_dot));
+        let reference = Reference::of(&ControllerParameters::default());
+        let x = moving(&s.into(), &s_dot.into());
         let s_ddot: Vector3<f64> = derivative(&model, &x, &Inputs::zero()).fixed_rows::<3>(3).into();
         let plant = |t: f64| Vector3::from(s) + Vector3::from(s_dot) * t + s_ddot * (0.5 * t * t);
         let wanted = second(&|t| reference.at(0.45 + t).position, 1e-3);

@@ -3,20 +3,14 @@
 use nalgebra::{Vector3, Vector6};
 use proptest::prelude::*;
 use rps3::control::{
-    ControllerParameters, Estimate, Fitness, ForceDistribution, Mode, Profile, Reference, SingularBasis, Situation,
-    Tuning, voltages,
+    ControllerParameters, Estimate, Fitness, ForceDistribution, Mode, Reference, SingularBasis, Situation, Tuning,
+    voltages,
 };
 use rps3::coupling::{Experiment, measure};
-use rps3::dynamics::{Inputs, PlantModel, PlantState};
+use rps3::dynamics::{Inputs, PlantModel, moving};
 use rps3::study::Crossing;
 
 const SAMPLE_TIME: f64 = 1e-3;
-
-/// The default crossing's path.
-fn path(model: &PlantModel<f64>, parameters: &ControllerParameters) -> Reference<f64> {
-    let waypoints = parameters.waypoints.map(Vector3::from);
-    Reference::new(waypoints, parameters.move_time, Profile::Quintic, model.geometry.joint_radius)
-}
 
 fn situation(
     model: &PlantModel<f64>,
@@ -25,10 +19,7 @@ fn situation(
     s: Vector3<f64>,
     s_dot: Vector3<f64>,
 ) -> Situation<f64> {
-    let mut x = PlantState::zeros();
-    x.fixed_rows_mut::<3>(0).copy_from(&s);
-    x.fixed_rows_mut::<3>(3).copy_from(&s_dot);
-    let measured = measure(model, &x, &Inputs::zero());
+    let measured = measure(model, &moving(&s, &s_dot), &Inputs::zero());
     Situation::new(model, &Estimate { s, s_dot }, &path.at(t), &measured, &Tuning::default().gains)
 }
 
@@ -42,7 +33,7 @@ proptest! {
     ) {
         let experiment = Crossing::default().experiment(true);
         let model = PlantModel::<f64>::without_stops(&experiment.plant.mechanism);
-        let path = path(&model, &experiment.controller);
+        let path = Reference::of(&experiment.controller);
         let [weight_velocity, weight_acceleration] = weights;
         let tuning = Tuning { horizon, weight_velocity, weight_acceleration, ..Tuning::default() };
         let now = path.at(t);
@@ -70,7 +61,7 @@ proptest! {
     ) {
         let experiment = Crossing::default().experiment(six);
         let model = PlantModel::<f64>::without_stops(&experiment.plant.mechanism);
-        let path = path(&model, &experiment.controller);
+        let path = Reference::of(&experiment.controller);
         let situation = situation(&model, &path, 0.4, path.at(0.4).position, Vector3::from(rates));
         let (wanted, measured) = (Vector6::from(wanted), Vector6::from(measured));
         let command = voltages(&model.motors, &situation, &wanted, &measured, SAMPLE_TIME);

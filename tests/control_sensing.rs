@@ -8,7 +8,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use rps3::control::{ControllerParameters, Deviations, Estimator, Measurement, SensorParameters, Sensors};
 use rps3::coupling::measure;
 use rps3::defaults as d;
-use rps3::dynamics::{Inputs, PlantModel, PlantParameters, PlantState};
+use rps3::dynamics::{Inputs, PlantModel, PlantParameters, moving};
 use rps3::mechanism::{Limb, Pose};
 
 const DEVIATIONS: Deviations = Deviations { length: 1.5e-4, angle: 0.2 * d::DEG, length_bias: 1e-9 };
@@ -19,10 +19,7 @@ fn model() -> PlantModel<f64> {
 
 /// What ideal sensors tell at coordinates `s` and rates `s_dot`.
 fn exact(model: &PlantModel<f64>, s: [f64; 3], s_dot: [f64; 3]) -> Measurement<f64> {
-    let mut x = PlantState::zeros();
-    x.fixed_rows_mut::<3>(0).copy_from(&Vector3::from(s));
-    x.fixed_rows_mut::<3>(3).copy_from(&Vector3::from(s_dot));
-    measure(model, &x, &Inputs::zero())
+    measure(model, &moving(&s.into(), &s_dot.into()), &Inputs::zero())
 }
 
 const VIA: [f64; 3] = [d::VIA_HEAVE, d::VIA_TILT_X, d::VIA_TILT_Y];

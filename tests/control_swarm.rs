@@ -8,17 +8,14 @@ use rps3::control::{
 };
 use rps3::coupling::measure;
 use rps3::defaults as d;
-use rps3::dynamics::{Inputs, PlantModel, PlantState};
+use rps3::dynamics::{Inputs, PlantModel, moving};
 use rps3::mechanism::singular_heights;
 use rps3::study::{Crossing, MODES, in_parallel};
 
 const SAMPLE_TIME: f64 = 1e-3;
 
 fn reference(revolute_motors: bool) -> Reference<f64> {
-    let experiment = Crossing::default().experiment(revolute_motors);
-    let parameters = experiment.controller;
-    let r_b = PlantModel::<f64>::without_stops(&parameters.mechanism).geometry.joint_radius;
-    Reference::new(parameters.waypoints.map(Vector3::from), parameters.move_time, parameters.profile, r_b)
+    Reference::of(&Crossing::default().experiment(revolute_motors).controller)
 }
 
 proptest! {
@@ -34,10 +31,7 @@ proptest! {
         // errors large enough to meet the voltage limit now and then
         let s = now.position + Vector3::new(1e-2 * error[0], 5e-2 * error[1], 5e-2 * error[2]);
         let s_dot = now.rate + Vector3::new(0.1 * rates[0], 0.5 * rates[1], 0.5 * rates[2]);
-        let mut x = PlantState::zeros();
-        x.fixed_rows_mut::<3>(0).copy_from(&s);
-        x.fixed_rows_mut::<3>(3).copy_from(&s_dot);
-        let measured = measure(&model, &x, &Inputs::zero());
+        let measured = measure(&model, &moving(&s, &s_dot), &Inputs::zero());
         let situation = Situation::new(&model, &Estimate { s, s_dot }, &now, &measured, &tuning.gains);
         let basis = SingularBasis::new(&situation);
         let distribution = ForceDistribution::new(&model, &situation);
@@ -145,18 +139,13 @@ fn at_an_exactly_singular_pose_the_damping_found_is_the_damping_in_force() {
         let s = Vector3::new(heave, tilt_x, tilt_y);
         for seed in 0..20 {
             let s_dot = Vector3::new(-0.09, 0.02 * f64::from(seed - 10), 0.1);
-            let mut x = PlantState::zeros();
-            x.fixed_rows_mut::<3>(0).copy_from(&s);
-            x.fixed_rows_mut::<3>(3).copy_from(&s_dot);
-            let measured = measure(&model, &x, &Inputs::zero());
+            let measured = measure(&model, &moving(&s, &s_dot), &Inputs::zero());
             let mut controller = Controller::new(experiment.controller).unwrap();
             let external = ReferencePoint::default();
             let found = controller.tick(0.0, &measured, &external, &experiment.tuning, false).unwrap();
             assert!(found.sigma_min < 1e-12, "{}", found.sigma_min);
             let estimate = Estimate { s: found.estimate, s_dot };
-            let r_b = model.geometry.joint_radius;
-            let p = &experiment.controller;
-            let path = Reference::new(p.waypoints.map(Vector3::from), p.move_time, p.profile, r_b);
+            let path = Reference::of(&experiment.controller);
             let situation = Situation::new(&model, &estimate, &path.at(0.0), &measured, &experiment.tuning.gains);
             let (basis, distribution) = (SingularBasis::new(&situation), ForceDistribution::new(&model, &situation));
             let ahead = path.at(experiment.tuning.horizon);

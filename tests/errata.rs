@@ -150,7 +150,7 @@ proptest! {
 fn deceleration_region_ends_at_its_width() {
     // (4.16): 1/dt at the singularity, falling linearly to 0 at delta_hd
     let d = damping(0.05);
-    assert!((d.rho_hd(0.0, 1e-3) - 1000.0).abs() < 1e-9);
+    assert_eq!(d.rho_hd(0.0, 1e-3), 1000.0);
     assert!((d.rho_hd(0.05, 1e-3) - 500.0).abs() < 1e-9);
     assert_eq!(d.rho_hd(0.1, 1e-3), 0.0);
     assert_eq!(d.rho_hd(0.2, 1e-3), 0.0);

@@ -6,7 +6,7 @@ use common::{COUPLED_STEP, Message, Slave};
 use nalgebra::{Vector3, Vector6};
 use rps3::control::{Controller, ControllerParameters, Measurement, ReferencePoint};
 use rps3::coupling::{Experiment, measure};
-use rps3::dynamics::{Inputs, PlantModel, PlantParameters, PlantState};
+use rps3::dynamics::{Inputs, PlantModel, PlantParameters, moving};
 use rps3::fmi2::types::Status;
 use rps3::models;
 
@@ -212,9 +212,7 @@ fn after_a_cut_off_the_prediction_knows_that_there_was_no_voltage() {
     let experiment = Experiment::default();
     let parameters = ControllerParameters { computation_delay: true, ..experiment.controller };
     let model = PlantModel::<f64>::without_stops(&parameters.mechanism);
-    let mut state = PlantState::zeros();
-    state.fixed_rows_mut::<3>(0).copy_from(&Vector3::from(experiment.plant.start));
-    let measured = measure(&model, &state, &Inputs::zero());
+    let measured = measure(&model, &moving(&experiment.plant.start.into(), &Vector3::zeros()), &Inputs::zero());
     let missing = Measurement { lengths: measured.lengths * f64::NAN, ..measured };
     let tick = |controller: &mut Controller, k: u32, measured: &Measurement<f64>| {
         let external = ReferencePoint::default();

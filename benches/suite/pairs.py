@@ -63,13 +63,13 @@ def measure(native: Native, plant: Fmu, controller: Fmu, rounds: int) -> tuple[l
                 "FMPy": lambda mode=mode: through_fmpy(plant, controller, mode),
             },
         )
-        part = {key: float(seconds.mean()) for key, seconds in inside.items()}
+        # timed in that way alone
+        shares = {"C": ", ".join(f"{part} {inside[part].mean() / times['C']:.0%}" for part in ("controller", "plant"))}
         ways = {"C": "C functions of the FMUs", "crate": "crate `fmi` 0.8", "FMPy": "FMPy 0.3"}
         for key, way in ways.items():
             rows.append(Row(f"pair, {name}", "in process", times["native"], way, times[key]))
         for key, way in {"native": "in process, without FMI", **ways}.items():
             seconds = times[key]
-            share = f"controller {part['controller'] / seconds:.0%}, plant {part['plant'] / seconds:.0%}"
-            cells.append([name, way, duration(seconds), f"{TICK / seconds:.0f}", share if key == "C" else ""])
+            cells.append([name, way, duration(seconds), f"{TICK / seconds:.0f}", shares.get(key, "")])
     head = ["control mode", "way", "a tick", "times real time", "of which `fmi2DoStep`"]
     return rows, Listing("pair", head, cells)

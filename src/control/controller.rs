@@ -17,7 +17,7 @@ use super::{
     VoltageCommand, lyapunov, lyapunov_rate,
 };
 use crate::dynamics::solver::{Settings, Solver};
-use crate::dynamics::{Inputs, NOMINAL, PlantModel, PlantState, STATES, derivative};
+use crate::dynamics::{Inputs, NOMINAL, PlantModel, STATES, derivative, moving};
 use crate::mechanism::Geometry;
 use crate::scalar::Scalar;
 
@@ -130,9 +130,7 @@ impl Controller {
     pub fn new(parameters: ControllerParameters) -> Result<Self, ControlError> {
         parameters.validate()?;
         let model = PlantModel::without_stops(&parameters.mechanism);
-        let waypoints = parameters.waypoints.map(Vector3::from);
-        let reference =
-            Reference::new(waypoints, parameters.move_time, parameters.profile, model.geometry.joint_radius);
+        let reference = Reference::of(&parameters);
         let search = Search::new(parameters.swarm, parameters.mechanism.revolute_motors)?;
         let rng = Xoshiro256PlusPlus::seed_from_u64(parameters.seed);
         let mut sensor_rng = rng.clone();
@@ -336,9 +334,7 @@ impl Controller {
         estimate: &Estimate<f64>,
         currents: &Vector6<f64>,
     ) -> Result<(Estimate<f64>, Vector6<f64>), ControlError> {
-        let mut x = PlantState::zeros();
-        x.fixed_rows_mut::<3>(0).copy_from(&estimate.s);
-        x.fixed_rows_mut::<3>(3).copy_from(&estimate.s_dot);
+        let mut x = moving(&estimate.s, &estimate.s_dot);
         x.fixed_rows_mut::<6>(6).copy_from(currents);
         if !self.parameters.mechanism.revolute_motors {
             // their circuits are open, whatever the sensors say

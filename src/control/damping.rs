@@ -45,8 +45,8 @@ pub struct Damping<T> {
 /// rounding leaves of sigma^2 anywhere else.
 pub const SMALLEST_SQUARE: f64 = 1e-18;
 
-/// A sigma_min that small is no other than zero: a delta_hd below it could not be told from none.
-pub const SMALLEST_SIGMA: f64 = 1e-15;
+/// In place of a sigma_min of zero, so that there is a delta_hd (4.16) to every rho_hd, and back.
+pub const SMALLEST_SIGMA: f64 = f64::MIN_POSITIVE;
 
 impl<T: Scalar> Damping<T> {
     /// rho_hd (4.16), 1/s, at the smallest singular value `sigma_min`.

@@ -137,6 +137,7 @@ mod tests {
         println!("largest relative error of the quotients: {largest:.1e}, over {poses} poses");
         assert!(poses > 4000 && largest < 1e-4, "{largest:e} {poses}");
     }
+
     /// On the way to the singular surface, from where the voltage to hold is 96.5 % of the limit to where it is 98.5 %.
     #[test]
     fn what_holding_takes_beyond_the_usable_voltage_counts_squared() {

@@ -3,6 +3,8 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
+use super::ControllerParameters;
+use crate::mechanism::Geometry;
 use crate::scalar::{Scalar, constant};
 
 /// A reference at one instant.
@@ -52,6 +54,15 @@ pub struct Reference<T> {
 const BLEND: f64 = 0.1;
 /// Below this share of the path via coincides with start or end, and the path is straight.
 const COINCIDENT: f64 = 1e-6;
+
+impl Reference<f64> {
+    /// The internal reference of a controller with `parameters`.
+    pub fn of(parameters: &ControllerParameters) -> Self {
+        let ControllerParameters { mechanism, waypoints, move_time, profile, .. } = parameters;
+        let joint_radius = Geometry::new(mechanism.base_radius, mechanism.joint_spacing).joint_radius;
+        Self::new(waypoints.map(Vector3::from), *move_time, *profile, joint_radius)
+    }
+}
 
 impl<T: Scalar> Reference<T> {
     /// Through three waypoints (m, rad, rad) in `move_time` s. `joint_radius` r_b (m) makes angles

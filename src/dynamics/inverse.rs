@@ -4,7 +4,7 @@ use nalgebra::{Matrix3x6, Vector3, Vector6};
 use num_dual::Dual64;
 
 use super::{
-    Drive, Inputs, JointForces, MechanismParameters, PlantModel, PlantState, current_maps, evaluate, joint_forces,
+    Drive, Inputs, JointForces, MechanismParameters, PlantModel, current_maps, evaluate, joint_forces, moving,
 };
 use crate::svd::Svd;
 
@@ -90,9 +90,7 @@ impl InverseDynamics {
         let turning = map_rate.tr_mul(&multiplier);
         let current_rates = inverse * (load_rate - map_rate * currents) + turning - inverse * (map * turning);
 
-        let mut x = PlantState::zeros();
-        x.fixed_rows_mut::<3>(0).copy_from(&point.position);
-        x.fixed_rows_mut::<3>(3).copy_from(&point.velocity);
+        let mut x = moving(&point.position, &point.velocity);
         x.fixed_rows_mut::<6>(6).copy_from(&currents);
         let mut evaluation = evaluate(&self.model, &x, inputs);
         // equal up to rounding unless there is a shortfall
@@ -123,10 +121,7 @@ impl InverseDynamics {
         let acceleration = point.acceleration.zip_map(&point.jerk, Dual64::new);
         let loads =
             Inputs { force: inputs.force.map(Dual64::from), moment: inputs.moment.map(Dual64::from), ..Inputs::zero() };
-        let mut x = PlantState::zeros();
-        x.fixed_rows_mut::<3>(0).copy_from(&position);
-        x.fixed_rows_mut::<3>(3).copy_from(&velocity);
-        let idle = evaluate(model, &x, &loads);
+        let idle = evaluate(model, &moving(&position, &velocity), &loads);
         // M s_ddot + h less friction and loads: M times what the motors must add to the idle acceleration
         let force = idle.dynamics.mass_matrix * (acceleration - idle.acceleration);
         let (leg, revolute) = current_maps(model, &idle.limbs);

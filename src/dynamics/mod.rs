@@ -28,4 +28,4 @@ pub use inverse::{Demand, DriveDemand, InverseDynamics, TrajectoryPoint};
 pub use motor::{Drive, Motors};
 pub use parameters::{MechanismParameters, ParameterError, PlantParameters};
 pub use reaction::{Reactions, reactions};
-pub use state::{Inputs, NOMINAL, PlantModel, PlantState, STATES};
+pub use state::{Inputs, NOMINAL, PlantModel, PlantState, STATES, moving};

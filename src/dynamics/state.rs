@@ -16,6 +16,14 @@ pub const NOMINAL: [f64; STATES] = [0.1, 0.1, 0.1, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0,
 /// motors (A).
 pub type PlantState<T> = SVector<T, STATES>;
 
+/// The state at `s` (m, rad, rad) and `s_dot` without any current.
+pub fn moving<T: Scalar>(s: &Vector3<T>, s_dot: &Vector3<T>) -> PlantState<T> {
+    let mut x = PlantState::zeros();
+    x.fixed_rows_mut::<3>(0).copy_from(s);
+    x.fixed_rows_mut::<3>(3).copy_from(s_dot);
+    x
+}
+
 /// Inputs of the plant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Inputs<T> {

@@ -91,12 +91,7 @@ impl PlatformComputedTorque {
             searched: self.searched,
             parameters: *parameters,
             tuning: *tuning,
-            reference: Reference::new(
-                parameters.waypoints.map(Vector3::from),
-                parameters.move_time,
-                parameters.profile,
-                model.geometry.joint_radius,
-            ),
+            reference: Reference::of(parameters),
             estimator: Estimator::of(parameters),
             model,
         }

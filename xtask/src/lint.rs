@@ -5,8 +5,11 @@ use anyhow::Result;
 use crate::{command, python, setup};
 
 /// Manifests of programs whose dependencies concern nobody else, and where they are built.
-const WORKSPACES_OF_THEIR_OWN: [(&str, &str); 2] =
-    [("tests/fmi_master/Cargo.toml", "target/fmi-master"), ("benches/native/Cargo.toml", "target/bench")];
+const WORKSPACES_OF_THEIR_OWN: [(&str, &str); 3] = [
+    ("tests/fmi_master/Cargo.toml", "target/fmi-master"),
+    ("benches/native/Cargo.toml", "target/bench"),
+    ("fuzz/Cargo.toml", "target/fuzz"),
+];
 
 /// Checks format, lints and documentation of the Rust code, and the Python code.
 ///
@@ -22,8 +25,6 @@ pub fn run() -> Result<()> {
         let clippy = ["clippy", "--locked", "--all-targets", &manifest, &target, "--", "-D", "warnings"];
         command::run(&mut command::cargo(&clippy))?;
     }
-    // its targets build with a nightly compiler only
-    command::run(&mut command::cargo(&["fmt", "--check", "--manifest-path=fuzz/Cargo.toml"]))?;
     let mut doc = command::cargo(&["doc", "--workspace", "--no-deps", "--quiet"]);
     command::run(doc.env("RUSTDOCFLAGS", "-D warnings"))?;
     let python_code = ["python", "tests/python", "examples", "benches"];

@@ -3,7 +3,6 @@
 use std::hint::black_box;
 
 use anyhow::Result;
-use nalgebra::Vector3;
 use rps3::control::{
     Controller, ControllerParameters, Estimator, Fitness, ForceDistribution, Mode, Reference, ReferencePoint,
     SingularBasis, Situation, Tuning,
@@ -91,12 +90,7 @@ impl Parts {
         let model = PlantModel::without_stops(&parameters.mechanism);
         let tuning = Tuning { mode: Mode::HdracMpso, ..Tuning::default() };
         let measured = measure(&PlantModel::new(&plant(parameters)), &record.state, &inputs(record));
-        let reference = Reference::new(
-            parameters.waypoints.map(Vector3::from),
-            parameters.move_time,
-            parameters.profile,
-            model.geometry.joint_radius,
-        );
+        let reference = Reference::of(parameters);
         let (now, ahead) = (reference.at(record.time), reference.at(record.time + tuning.horizon));
         let (time, estimate) = timed(|| estimator.update(&model.geometry, &measured));
         self.estimate += time;
